@@ -49,6 +49,7 @@ mod records;
 mod render;
 mod resect;
 mod schema;
+mod sets;
 mod several;
 mod store;
 mod sweeps;

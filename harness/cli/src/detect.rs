@@ -15,7 +15,7 @@ use clap::{Args, ValueEnum};
 
 use super::context::{Context, finder};
 use super::output;
-use super::photos::say_turns;
+use super::photos::AsRead;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -37,6 +37,8 @@ pub struct Detect {
     /// What tells the shapes of a coded field's targets apart
     #[arg(long, value_enum, default_value_t, conflicts_with_all = ["board", "chessboard"])]
     classifier: Shapes,
+    #[command(flatten)]
+    read: AsRead,
     /// Where the points go [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
@@ -67,8 +69,7 @@ impl Detect {
         let finder = finder(board)?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
-        say_turns(&self.photos)?;
-        let found = finder.find_all(&self.photos, &|| progress.step())?;
+        let found = finder.find_all(&self.read.reader(&self.photos)?, &|| progress.step())?;
         let seen = found.iter().filter(|sighting| !sighting.rows.is_empty()).count();
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
         let mut doubtful = false;
@@ -100,8 +101,7 @@ impl Detect {
             .map_err(|error| Failure::input(format!("--testfield {name}: {error}; its [testfield] must have kind = \"coded\"")))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
-        say_turns(&self.photos)?;
-        let found = recognise_coded(&self.photos, &subject.field, &recogniser, &|| progress.step())?;
+        let found = recognise_coded(&self.read.reader(&self.photos)?, &subject.field, &recogniser, &|| progress.step())?;
         let rows: Vec<&PointRow> = found.iter().flatten().flat_map(|coded| &coded.rows).collect();
         let seen = found.iter().flatten().count();
         progress.finish(&format!("the field was recognised in {seen} of {} photographs, {} targets", found.len(), rows.len()));

@@ -1,16 +1,47 @@
-//! Photographs of one camera.
+//! Photographs, and how they are read.
 
 use std::path::PathBuf;
 
 use calibench_model::camera::ImageSize;
 use calibench_photographs::names::same_size;
-use calibench_photographs::{PhotographsError, turns};
+use calibench_photographs::{Asked, PhotographsError, Reader};
+use clap::Args;
 
 use crate::failure::Failure;
 
-/// Says how photographs are turned, on standard error.
+/// How photographs are read.
+#[derive(Args)]
+pub struct AsRead {
+    /// Take pixels as the files have them, whatever orientation their EXIF or TIFF tag asks for [default: turned as OpenCV's imread does; of one camera only where all ask for the same]
+    #[arg(long)]
+    ignore_orientation: bool,
+    /// Bits of a level in files of 16 bits, as of a camera of 12: the largest number of them is white [default: by the levels of all photographs]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(8..=16))]
+    bits: Option<u8>,
+}
+
+impl AsRead {
+    /// What reads photographs of any cameras; says on standard error how.
+    pub fn reader(&self, photos: &[PathBuf]) -> Result<Reader, Failure> {
+        self.asked(photos, Asked::default())
+    }
+
+    /// What reads photographs of one camera; says on standard error how. Sizes are compared before anything is measured.
+    pub fn of_one_camera(&self, photos: &[PathBuf], only_size: Option<ImageSize>) -> Result<Reader, Failure> {
+        self.asked(photos, Asked { only_size, one_camera: true, ..Asked::default() })
+    }
+
+    fn asked(&self, photos: &[PathBuf], asked: Asked) -> Result<Reader, Failure> {
+        let asked = Asked { ignore_orientation: self.ignore_orientation, bits: self.bits, ..asked };
+        let reader = Reader::of(photos, asked).map_err(of_one_camera)?;
+        reader.notes().iter().for_each(|line| say!("{line}"));
+        Ok(reader)
+    }
+}
+
+/// Says how photographs are turned and what their levels are, on standard error.
 pub fn say_turns(photos: &[PathBuf]) -> Result<(), Failure> {
-    turns(photos)?.iter().for_each(|line| say!("{line}"));
+    Reader::of(photos, Asked { bits: Some(16), ..Asked::default() })?.notes().iter().for_each(|line| say!("{line}"));
     Ok(())
 }
 
@@ -22,7 +53,7 @@ pub fn one_size<'p>(photos: impl IntoIterator<Item = (&'p PathBuf, ImageSize)>) 
 /// What is wrong with photographs of one camera.
 pub fn of_one_camera(error: PhotographsError) -> Failure {
     match error {
-        PhotographsError::Sizes { .. } => Failure::input(format!("{error} (several cameras: `calibrate --camera`)")),
+        PhotographsError::Sizes(_) => Failure::input(format!("{error} (several cameras: `calibrate --camera`)")),
         other => other.into(),
     }
 }

@@ -25,8 +25,8 @@ pub use fingerprint::Fingerprint;
 pub use folder::{NewFile, NewFolder, OutputFolder};
 pub use inputs::Inputs;
 pub use photo::{
-    Photo, PhotoError, Turn, encode_float_tiff, encode_png, encode_png_densely, is_deep, parse_photo, read_photo, size_of, turn_of,
-    write_png,
+    DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,
+    read_photo, read_photo_as, read_with_levels, size_of, write_png,
 };
 pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};

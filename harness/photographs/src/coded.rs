@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
-use calibench_exchange::{PointRow, read_photo};
+use calibench_exchange::PointRow;
 use calibench_model::{Image, Start, Testfield};
 use calibench_recognise::{NotRecognised, Reason, Recogniser, Recognition};
 use rayon::prelude::*;
 
-use crate::PhotographsError;
 use crate::names::{names, once};
+use crate::{PhotographsError, Reader};
 
 /// What was recognised of a field in a photograph.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,14 +72,15 @@ impl fmt::Display for Lost {
 /// # Errors
 /// A photograph that cannot be read, or that is given twice.
 pub fn recognise_coded(
-    photos: &[PathBuf],
+    reader: &Reader,
     field: &Testfield,
     recogniser: &Recogniser,
     step: &(dyn Fn() + Sync),
 ) -> Result<Vec<Result<Coded, NotRecognised>>, PhotographsError> {
+    let photos = reader.photos();
     once(photos)?;
     let one = |(path, name): (&PathBuf, &String)| {
-        let image = read_photo(path)?.image;
+        let image = reader.read(path)?;
         let found = coded_of(field, recogniser, &image, name);
         step();
         Ok(found)

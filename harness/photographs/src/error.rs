@@ -33,16 +33,22 @@ pub enum PhotographsError {
         /// The name of the first photograph.
         called: String,
     },
-    /// Photographs of one camera that differ in size.
-    #[error("{}: {} x {} px, but {} has {} x {}; expected photographs of one camera, in one orientation", other.display(), found.0, found.1, first.display(), size.0, size.1)]
-    Sizes {
-        /// The first.
-        first: PathBuf,
-        /// Its width and height, px.
-        size: (u32, u32),
-        /// Another one.
-        other: PathBuf,
-        /// Its width and height, px.
-        found: (u32, u32),
-    },
+    /// Photographs of one camera that differ in size, by size, the most frequent first.
+    #[error("photographs of several sizes: {}; expected photographs of one camera, in one orientation; --only-size {} leaves the others out", sizes(.0), most(.0))]
+    Sizes(Vec<((u32, u32), Vec<PathBuf>)>),
+}
+
+/// The most frequent size, as an option.
+fn most(all: &[((u32, u32), Vec<PathBuf>)]) -> String {
+    all.first().map_or_else(String::new, |((width, height), _)| format!("{width}x{height}"))
+}
+
+/// Sizes, px, with how many photographs have them; of all but the most frequent the names, too.
+fn sizes(all: &[((u32, u32), Vec<PathBuf>)]) -> String {
+    let one = |(place, ((width, height), photos)): (usize, &((u32, u32), Vec<PathBuf>))| {
+        let names: Vec<String> = photos.iter().map(|path| path.display().to_string()).collect();
+        let named = if place == 0 && photos.len() > 1 { format!("as {}", names[0]) } else { names.join(", ") };
+        format!("{width} x {height} px ({}: {named})", photos.len())
+    };
+    all.iter().enumerate().map(one).collect::<Vec<_>>().join("; ")
 }

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use calibench_detect::{FoundPoint, detect};
-use calibench_exchange::{ControlDisc, ControlRow, PointRow, read_photo};
+use calibench_exchange::{ControlDisc, ControlRow, PointRow};
 use calibench_model::boards::{Board, BoardError, BoardPoint, Layout};
 use calibench_model::{Image, Start, TargetKind};
 use rayon::prelude::*;
 
-use crate::PhotographsError;
 use crate::names::{names, once};
+use crate::{PhotographsError, Reader};
 
 /// A board and what finds it.
 pub struct Finder {
@@ -77,10 +77,11 @@ impl Finder {
     ///
     /// # Errors
     /// A photograph that cannot be read, or that is given twice.
-    pub fn find_all(&self, photos: &[PathBuf], step: &(dyn Fn() + Sync)) -> Result<Vec<Sighting>, PhotographsError> {
+    pub fn find_all(&self, reader: &Reader, step: &(dyn Fn() + Sync)) -> Result<Vec<Sighting>, PhotographsError> {
+        let photos = reader.photos();
         once(photos)?;
         let one = |(path, name): (&PathBuf, &String)| {
-            let found = self.find(&read_photo(path)?.image, name);
+            let found = self.find(&reader.read(path)?, name);
             step();
             Ok(found)
         };

@@ -2,6 +2,7 @@
 
 pub mod chessboard;
 pub mod coded;
+mod copies;
 mod error;
 mod finder;
 pub mod measured;
@@ -9,6 +10,7 @@ mod measured_board;
 pub mod names;
 mod option;
 pub mod points;
+mod reader;
 mod turns;
 
 pub use chessboard::Chessboard;
@@ -17,7 +19,7 @@ pub use finder::{Finder, Sighting};
 pub use measured::{Corners, Photo};
 pub use measured_board::{MeasuredBoards, measured_board, measured_boards, method_info};
 pub use option::board_of;
-pub use turns::turns;
+pub use reader::{Asked, Reader};
 
 /// The example of the README.
 #[cfg(doctest)]

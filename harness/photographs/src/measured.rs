@@ -2,17 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{LostRow, PointRow, read_photo};
+use calibench_exchange::{LostRow, PointRow};
 use calibench_measure::Operator;
 use calibench_model::Start;
 use calibench_model::camera::ImageSize;
 use rayon::prelude::*;
 
+use crate::copies::copies;
 use crate::names::{names, once};
-use crate::{Finder, PhotographsError, Sighting};
+use crate::{Finder, PhotographsError, Reader, Sighting};
 
 /// The status of a photograph in which the board was not found.
 pub const NOT_FOUND: &str = "not_found";
+/// The status of a photograph that is the same as another one.
+pub const COPY: &str = "copy";
 
 /// A photograph: the name of its image, where it is, and its size.
 pub type Photo = (String, PathBuf, ImageSize);
@@ -45,27 +48,46 @@ impl FromIterator<Corners> for Corners {
 
 impl Finder {
     /// The board's points in photographs: approximately where it is found, then by the operator called `method`. Those that it rejects, and photographs without
-    /// the board, are listed among the lost. One list a photograph; `step` is called after each, on any thread.
+    /// the board, are listed among the lost, and so are photographs that are the same as another one, which are in doubt. One list a photograph; `step` is called
+    /// after each, on any thread.
     ///
     /// # Errors
     /// A photograph that cannot be read, or that is given twice.
     pub fn measure(
         &self,
-        photos: &[PathBuf],
+        reader: &Reader,
         (method, operator): (&str, &dyn Operator),
         step: &(dyn Fn() + Sync),
     ) -> Result<Vec<Corners>, PhotographsError> {
+        let (photos, names) = (reader.photos(), names(reader.photos()));
         once(photos)?;
         let one = |(path, name): (&PathBuf, &String)| {
-            let found = self.in_photo((path, name), operator, method);
+            let found = self.in_photo(reader, (path, name), operator, method);
             step();
             found
         };
-        photos.par_iter().zip(&names(photos)).map(one).collect()
+        let mut found: Vec<Corners> = photos.par_iter().zip(&names).map(one).collect::<Result<_, _>>()?;
+        let points: Vec<Vec<_>> =
+            found.iter().map(|corners| corners.points.iter().map(|row| (row.target.as_str(), row.start.position)).collect()).collect();
+        for same in copies(&points) {
+            found[same.of].doubts.push(same.said(&names));
+            for copy in same.copies {
+                let reason = format!("the same photograph as {}", names[same.of]);
+                found[copy].points.clear();
+                found[copy].lost = vec![LostRow { image: names[copy].clone(), target: String::new(), status: COPY.to_owned(), reason }];
+            }
+        }
+        Ok(found)
     }
 
-    fn in_photo(&self, (path, name): (&Path, &str), operator: &dyn Operator, method: &str) -> Result<Corners, PhotographsError> {
-        let image = read_photo(path)?.image;
+    fn in_photo(
+        &self,
+        reader: &Reader,
+        (path, name): (&Path, &str),
+        operator: &dyn Operator,
+        method: &str,
+    ) -> Result<Corners, PhotographsError> {
+        let image = reader.read(path)?;
         let Sighting { rows, why, doubts } = self.find(&image, name);
         let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
         let measured = operator.measure_all(&image, &starts);

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use calibench_exchange::read_photo;
 use calibench_measure::{Configured, ImageId};
 use calibench_model::camera::ImageSize;
 use calibench_model::{Image, PixelPoint, Start, stop};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
 use rayon::prelude::*;
 
+use crate::copies::copies;
 use crate::names::{names, once, same_size};
-use crate::{Finder, PhotographsError};
+use crate::{Finder, PhotographsError, Reader, Sighting};
 
 /// A board in photographs of one camera, in the hands of many methods.
 #[derive(Debug)]
@@ -24,28 +24,40 @@ pub struct MeasuredBoards {
     pub doubts: Vec<String>,
 }
 
-/// A board's points in photographs, all of one size, in the hands of every available method. `step` is called after each photograph, on any thread.
+/// A board's points in photographs, all of one size, in the hands of every available method. Photographs that are the same as another one are among those without
+/// the board, and in doubt. `step` is called after each photograph, on any thread.
 ///
 /// # Errors
 /// A photograph that cannot be read, or that is given twice; photographs of several sizes.
 pub fn measured_boards(
-    photos: &[PathBuf],
+    reader: &Reader,
     finder: &Finder,
     methods: &[Configured],
     step: &(dyn Fn() + Sync),
 ) -> Result<MeasuredBoards, PhotographsError> {
+    let (photos, names) = (reader.photos(), names(reader.photos()));
     once(photos)?;
+    let size = same_size(photos.iter().zip(reader.sizes().iter().copied()))?;
     let one = |(path, name): (&PathBuf, &String)| {
         stop::point();
-        let image = read_photo(path)?.image;
-        let found = measured_board(&image, name, finder, methods.iter().enumerate());
+        let image = reader.read(path)?;
+        let sighting = finder.find(&image, name);
+        let at: Vec<(String, PixelPoint)> = sighting.rows.iter().map(|row| (row.target.clone(), row.start.position)).collect();
+        let (trial, doubts) = measured_sighting(&image, name, (finder, sighting), methods.iter().enumerate());
         step();
-        Ok((found, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
+        Ok((trial, doubts, at))
     };
-    let found = photos.par_iter().zip(&names(photos)).map(one).collect::<Result<Vec<_>, PhotographsError>>()?;
-    let size = same_size(photos.iter().zip(found.iter().map(|(_, size)| *size)))?;
+    let mut found = photos.par_iter().zip(&names).map(one).collect::<Result<Vec<_>, PhotographsError>>()?;
+    let points: Vec<Vec<_>> = found.iter().map(|(.., at)| at.iter().map(|(target, at)| (target.as_str(), *at)).collect()).collect();
+    for same in copies(&points) {
+        found[same.of].1.push(same.said(&names));
+        for copy in same.copies {
+            let why = format!("the same photograph as {}", names[same.of]);
+            found[copy].0 = Trial { missed_views: vec![(names[copy].as_str().into(), why)], ..Trial::default() };
+        }
+    }
     let mut whole = MeasuredBoards { size, trial: Trial::default(), doubts: Vec::new() };
-    for ((trial, doubts), _) in found {
+    for (trial, doubts, _) in found {
         whole.trial.points.extend(trial.points);
         whole.trial.missed_views.extend(trial.missed_views);
         whole.doubts.extend(doubts);
@@ -69,7 +81,15 @@ pub fn measured_board<'m>(
     finder: &Finder,
     methods: impl IntoIterator<Item = (usize, &'m Configured)>,
 ) -> (Trial, Vec<String>) {
-    let found = finder.find(image, view);
+    measured_sighting(image, view, (finder, finder.find(image, view)), methods)
+}
+
+fn measured_sighting<'m>(
+    image: &Image,
+    view: &str,
+    (finder, found): (&Finder, Sighting),
+    methods: impl IntoIterator<Item = (usize, &'m Configured)>,
+) -> (Trial, Vec<String>) {
     let doubts = found.doubts.iter().map(|doubt| format!("{view}: {doubt}")).collect();
     let (mut trial, view): (Trial, Arc<str>) = (Trial::default(), view.into());
     if let Some(why) = found.why {

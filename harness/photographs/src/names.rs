@@ -43,16 +43,18 @@ pub fn once(photos: &[PathBuf]) -> Result<(), PhotographsError> {
 /// # Errors
 /// [`PhotographsError::None`], [`PhotographsError::Sizes`].
 pub fn same_size<'p>(photos: impl IntoIterator<Item = (&'p PathBuf, ImageSize)>) -> Result<ImageSize, PhotographsError> {
-    let mut photos = photos.into_iter();
-    let Some((first, size)) = photos.next() else { return Err(PhotographsError::None) };
-    match photos.find(|(_, other)| *other != size) {
-        None => Ok(size),
-        Some((path, other)) => Err(PhotographsError::Sizes {
-            first: first.clone(),
-            size: (size.width, size.height),
-            other: path.clone(),
-            found: (other.width, other.height),
-        }),
+    let mut by_size: Vec<(ImageSize, Vec<PathBuf>)> = Vec::new();
+    for (path, size) in photos {
+        match by_size.iter_mut().find(|(known, _)| *known == size) {
+            Some((_, own)) => own.push(path.clone()),
+            None => by_size.push((size, vec![path.clone()])),
+        }
+    }
+    by_size.sort_by_key(|(_, own)| std::cmp::Reverse(own.len()));
+    match by_size.as_slice() {
+        [] => Err(PhotographsError::None),
+        [(size, _)] => Ok(*size),
+        _ => Err(PhotographsError::Sizes(by_size.into_iter().map(|(size, own)| ((size.width, size.height), own)).collect())),
     }
 }
 
@@ -73,6 +75,6 @@ mod tests {
         let size = |width| ImageSize { width, height: 480 };
         assert_eq!(same_size([(&paths[0], size(640)), (&paths[1], size(640))]).ok(), Some(size(640)));
         let error = same_size([(&paths[0], size(640)), (&paths[1], size(480))]).unwrap_err();
-        assert!(error.to_string().contains("b.png: 480 x 480 px, but a.png has 640 x 480"), "{error}");
+        assert!(error.to_string().contains("640 x 480 px (1: a.png); 480 x 480 px (1: b.png)"), "{error}");
     }
 }

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use calibench_exchange::{Outcome, Points, read_photo};
+use calibench_exchange::{Outcome, Points};
 use calibench_measure::{Configured, Operator};
 use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start, stop};
 use rayon::prelude::*;
 
-use crate::PhotographsError;
 use crate::names::{ambiguous, names, once};
+use crate::{PhotographsError, Reader};
 
 /// Points that are handed to a method at a time: bounds the memory, whatever the number of points.
 const CHUNK: usize = 1 << 16;
@@ -106,10 +106,11 @@ impl Measured {
 /// As [`photos_of`]; a photograph that cannot be read.
 pub fn measure_points(
     points: &Points,
-    photos: &[PathBuf],
+    reader: &Reader,
     methods: &[Configured],
     step: &(dyn Fn() + Sync),
 ) -> Result<Measured, PhotographsError> {
+    let photos = reader.photos();
     let photo_of = photos_of(points, photos)?;
     let mut images: Vec<Vec<usize>> = vec![Vec::new(); photos.len()];
     photo_of.iter().enumerate().for_each(|(image, photo)| photo.iter().for_each(|&photo| images[photo].push(image)));
@@ -118,7 +119,7 @@ pub fn measure_points(
     let found = Mutex::new(Measured::new(points.len(), available.len()));
     let one = |(path, images): (&PathBuf, &Vec<usize>)| -> Result<(), PhotographsError> {
         // Read even if no point asks for it: a photograph that cannot be read is a mistake.
-        let photo = read_photo(path)?.image;
+        let photo = reader.read(path)?;
         let wanted: Vec<usize> = images.iter().flat_map(|&image| groups.of_group(image)).collect();
         for chunk in wanted.chunks(CHUNK) {
             for (index, (method, operator)) in available.iter().enumerate() {
@@ -191,6 +192,7 @@ mod tests {
     use calibench_model::TargetKind;
 
     use super::*;
+    use crate::Asked;
 
     fn points(images: &[&str]) -> Points {
         let mut points = Points::default();
@@ -240,7 +242,7 @@ mod tests {
             .map(|method| Registry::builtin().parse(method).unwrap());
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| measure_points(&points, &photos, &methods, &|| ())).unwrap()
+            pool.install(|| measure_points(&points, &Reader::of(&photos, Asked::default()).unwrap(), &methods, &|| ())).unwrap()
         };
         let found = on(1);
         for (m, method) in methods.iter().take(4).enumerate() {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use calibench_exchange::{PhotoError, is_deep, read_photo};
+use calibench_exchange::{PhotoError, head_of, read_photo};
 use calibench_model::{Image, level};
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageError};
@@ -123,7 +123,7 @@ impl Shown {
     /// A file that cannot be read.
     pub fn read(path: &Path) -> Result<(Self, Image<'static>), PhotoError> {
         let image = read_photo(path)?.image;
-        Ok((Self::of(&image, is_deep(path)?), image))
+        Ok((Self::of(&image, head_of(path)?.is_deep), image))
     }
 
     /// Columns and rows, px.

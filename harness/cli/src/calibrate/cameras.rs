@@ -104,6 +104,11 @@ impl Cameras {
         self.start.iter().map(|start| PathBuf::from(&start.value))
     }
 
+    /// Whether several cameras are told apart.
+    pub const fn are_several(&self) -> bool {
+        !self.claims.is_empty()
+    }
+
     /// The pixel pitch of a camera, um.
     pub fn pitch_um(&self, camera: &str) -> Option<f64> {
         of(&self.pitch, camera).copied()

@@ -5,16 +5,20 @@ use std::path::PathBuf;
 use calibench_calibrate::{
     BoardShape, Calibration, CalibrationError, DatumChoice, Discs, MOST_TRIED, Settings, Suspected, calibrate, prepare, suspected,
 };
-use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
+use calibench_exchange::{
+    ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, Reading, read_control, read_observed_stations,
+};
 use calibench_model::boards::Board;
-use calibench_photographs::{Chessboard, Corners, Photo, board_of};
+use calibench_model::camera::ImageSize;
+use calibench_photographs::{Chessboard, Corners, Photo, Reader, board_of};
 use calibench_report::calibration::{Pictured, scene_ply, summary, write_report};
 use calibench_report::json::CalibrationAnswer;
 use clap::Args;
 
 use super::context::{Context, finder};
 use super::convert::positive;
-use super::{inputs, output};
+use super::photos::AsRead;
+use super::{inputs, output, reading};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
@@ -38,6 +42,11 @@ pub struct Calibrate {
     /// The method that measures the board's points [default: parametric_corner; of circles and rings ellipse_edges]
     #[arg(short, long, value_name = "METHOD", requires = "photos")]
     method: Option<String>,
+    #[command(flatten)]
+    read: AsRead,
+    /// Leave out photographs of another size, px
+    #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "photos")]
+    only_size: Option<ImageSize>,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
     points: Option<PathBuf>,
@@ -106,6 +115,8 @@ struct Input {
     lost: LostRows,
     /// Where the points were measured here.
     photos: Vec<Photo>,
+    /// How they were read.
+    reading: Reading,
     control: Vec<ControlRow>,
     /// What is in doubt of where a board was found.
     doubts: Vec<String>,
@@ -119,7 +130,7 @@ impl Calibrate {
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, &inputs)).transpose()?;
         let outputs = Outputs { camera, scene, report };
-        let Input { points, lost, photos, control, doubts } = self.input(context)?;
+        let Input { points, lost, photos, reading, control, doubts } = self.input(context)?;
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
         let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
         let settings = self.settings(&photos, self.eccentricity.or(of_discs.then_some(Discs::Control)))?;
@@ -138,7 +149,7 @@ impl Calibrate {
         calibrate(&prepared, &sets, |calibration| {
             let in_doubt = !(calibration.doubts().is_empty() && doubts.is_empty());
             let suspects = if in_doubt { suspects(Ok(calibration)) } else { Vec::new() };
-            self.deliver(calibration, (&photos, &doubts), &suspects, &outputs)?;
+            self.deliver(calibration, (&photos, reading, &doubts), &suspects, &outputs)?;
             if self.answered.json {
                 answer(&CalibrationAnswer::new(calibration, &doubts, &suspects).map_err(Failure::Input)?)?;
             } else {
@@ -154,17 +165,29 @@ impl Calibrate {
         match (&self.points, &self.control, self.board.or(self.chessboard.map(Board::from))) {
             (Some(points), Some(control), _) => {
                 let PointFile { points, lost } = inputs::measured(points)?;
-                Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)?, doubts: Vec::new() })
+                Ok(Input {
+                    points,
+                    lost,
+                    photos: Vec::new(),
+                    reading: Reading::default(),
+                    control: read_control(control)?,
+                    doubts: Vec::new(),
+                })
             }
             (_, _, Some(board)) => {
                 let finder = finder(board)?;
-                let Corners { points, lost, photos, doubts } =
-                    photographs::corners(context, &finder, &self.photos, self.method.as_deref())?;
+                let (Corners { points, lost, photos, doubts }, reading) =
+                    photographs::corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
-                Ok(Input { points, lost, photos, control: finder.control(), doubts })
+                Ok(Input { points, lost, photos, reading, control: finder.control(), doubts })
             }
             _ => Err(Failure::input("expected --points, --control and --size, or photographs and --board")),
         }
+    }
+
+    /// What reads the photographs. Of several cameras each has its own size and orientation.
+    fn reader(&self) -> Result<Reader, Failure> {
+        if self.cameras.are_several() { self.read.reader(&self.photos) } else { self.read.of_one_camera(&self.photos, self.only_size) }
     }
 
     fn settings(&self, photos: &[Photo], discs: Option<Discs>) -> Result<Settings, Failure> {
@@ -185,12 +208,12 @@ impl Calibrate {
     fn deliver(
         &self,
         calibration: &Calibration<'_>,
-        (photos, doubts): (&[Photo], &[String]),
+        (photos, reading, doubts): (&[Photo], Reading, &[String]),
         suspects: &[Suspected],
         outputs: &Outputs,
     ) -> Result<(), Failure> {
         let doubts: Vec<String> = doubts.iter().cloned().chain(suspects.iter().map(Suspected::words)).collect();
-        let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path())).collect();
+        let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path(), reading)).collect();
         if let Some(output) = &outputs.camera {
             camera_file::write(output, calibration, self.to.as_deref())?;
         }

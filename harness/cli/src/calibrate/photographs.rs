@@ -1,30 +1,33 @@
 //! A board's points in photographs, with a word about what was not found.
 
-use std::path::PathBuf;
-
-use calibench_exchange::LostRow;
-use calibench_photographs::Finder;
-use calibench_photographs::measured::{Corners, NOT_FOUND};
+use calibench_exchange::{LostRow, Reading};
+use calibench_photographs::measured::Corners;
+use calibench_photographs::{Finder, Reader};
 
 use super::super::context::Context;
 use super::super::notes::say_notes;
-use super::super::photos::say_turns;
 use super::super::progress::Progress;
 use crate::failure::Failure;
 
-/// The points of a board in photographs, by the method of that name, or by the usual one for their kind.
-pub fn corners(context: &Context<'_>, finder: &Finder, photos: &[PathBuf], method: Option<&str>) -> Result<Corners, Failure> {
+/// The points of a board in photographs, and how these were read, by the method of that name, or by the usual one for their kind.
+pub fn corners(
+    context: &Context<'_>,
+    finder: &Finder,
+    reader: &dyn Fn() -> Result<Reader, Failure>,
+    method: Option<&str>,
+) -> Result<(Corners, Reading), Failure> {
     let method = context.method_of_boards(method.unwrap_or(finder.usual_method()), finder.kind())?;
     let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
+    let reader = reader()?;
+    let photos = reader.photos();
     let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
-    say_turns(photos)?;
-    let found = finder.measure(photos, (&method.label, operator.as_ref()), &|| progress.step())?;
+    let found = finder.measure(&reader, (&method.label, operator.as_ref()), &|| progress.step())?;
     let mut seen = 0;
     for (path, Corners { points, lost, doubts, .. }) in photos.iter().zip(&found) {
         doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
         seen += usize::from(!points.is_empty());
         match (lost.first(), lost.len()) {
-            (Some(LostRow { status, reason, .. }), 1) if status == NOT_FOUND => say!("{}: {reason}", path.display()),
+            (Some(LostRow { target, reason, .. }), 1) if target.is_empty() => say!("{}: {reason}", path.display()),
             (Some(_), count) => say!("{}: {count} points were rejected by {}", path.display(), method.label),
             (None, _) => {}
         }
@@ -37,5 +40,5 @@ pub fn corners(context: &Context<'_>, finder: &Finder, photos: &[PathBuf], metho
              rejected every point",
         ));
     }
-    Ok(found.into_iter().collect())
+    Ok((found.into_iter().collect(), reader.reading()))
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
-use calibench_exchange::{Inputs, read_control};
+use calibench_exchange::{Inputs, Reading, read_control};
 use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, published_camera, stated_sigma, usual_models};
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
@@ -16,6 +16,7 @@ use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
+use super::photos::AsRead;
 use super::{output, reading};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
@@ -47,6 +48,11 @@ pub struct Judge {
     /// In place of a chessboard: points of known object coordinates, as of a house, whose names the files of --points use: CSV with target,X,Y,Z and, if known, sX,sY,sZ
     #[arg(long, value_name = "CSV", requires = "points")]
     control: Option<PathBuf>,
+    #[command(flatten)]
+    read: AsRead,
+    /// Leave out photographs of another size, px
+    #[arg(long, value_name = "WxH", value_parser = reading::size, conflicts_with = "points")]
+    only_size: Option<ImageSize>,
     /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners; with --camera parametric_corner:window=15]
     #[arg(short, long = "method", value_name = "METHOD", conflicts_with = "points")]
     methods: Vec<String>,
@@ -88,7 +94,7 @@ impl Judge {
         let files = self.points.iter().map(|file| &file.path);
         let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
-        let (material, doubts) = self.material(context)?;
+        let (material, doubts, reading) = self.material(context)?;
         let size = material.size;
         let published = self.camera.as_deref().or(self.published.as_deref());
         let published =
@@ -106,7 +112,7 @@ impl Judge {
         let limit_px = Some(self.limit.unwrap_or_else(|| usual_limit_px(size)));
         let summary = Summary { limit_px, ..Summary::new(&rows, self.seed) };
         if let Some(folder) = folder {
-            folder.replace(|folder| self.write(folder, (&material, &options, &doubts), &rows, &summary))?;
+            folder.replace(|folder| self.write(folder, (&material, &options, &doubts, reading), &rows, &summary))?;
         }
         let Some(trusted) = summary.trusted() else { return Err(Failure::input(section(&summary).0)) };
         let in_use = self.in_use(&trusted);
@@ -151,8 +157,8 @@ impl Judge {
     }
 
     /// The corners to judge by, measured here or read, and what is in doubt of where a board was found.
-    fn material(&self, context: &Context<'_>) -> Result<(Material, Vec<String>), Failure> {
-        let read = |field, size| Ok((files::material(&self.points, field, size)?, Vec::new()));
+    fn material(&self, context: &Context<'_>) -> Result<(Material, Vec<String>, Reading), Failure> {
+        let read = |field, size| Ok((files::material(&self.points, field, size)?, Vec::new(), Reading::default()));
         match (self.size, &self.control, self.pictured()) {
             (Some(size), Some(control), _) => read(Field::Points(read_control(control)?), size),
             (Some(size), None, Some(board)) => read(field_of(board)?, size),

@@ -1,8 +1,6 @@
 //! The page of a judgement, its pictures and its numbers.
 
-use std::path::PathBuf;
-
-use calibench_exchange::NewFolder;
+use calibench_exchange::{NewFolder, Reading};
 use calibench_judge::{CornerFile, Material, Options, Remaining, remaining};
 use calibench_model::boards::{Board, Chessboard};
 use calibench_model::escape::{self, code};
@@ -18,7 +16,7 @@ impl Judge {
     pub fn write(
         &self,
         folder: &NewFolder,
-        (material, options, doubts): (&Material, &Options, &[String]),
+        (material, options, doubts, reading): (&Material, &Options, &[String], Reading),
         rows: &[Row],
         summary: &Summary,
     ) -> std::io::Result<()> {
@@ -40,7 +38,7 @@ impl Judge {
         folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
         let title = if self.points.is_empty() { "Photographs judged" } else { "Corners judged" };
         let names = names(&self.photos);
-        let photos = names.iter().map(String::as_str).zip(self.photos.iter().map(PathBuf::as_path)).collect();
+        let photos = names.iter().zip(&self.photos).map(|(name, path)| (name.as_str(), path.as_path(), reading)).collect();
         let corners = trusted.as_ref().map_or_else(Vec::new, |trusted| left((material, options), summary, trusted));
         let measured = Measured { corners, photos, size: Some(material.size) };
         let page = page(title, &text, (summary, trusted.as_ref()), (found.as_ref(), doubts), measured);

@@ -1,6 +1,7 @@
 //! A board's points in photographs, by several methods.
 
 use calibench_calibrate::choice::HALF;
+use calibench_exchange::Reading;
 use calibench_judge::{JudgementError, Material, usual_methods};
 use calibench_model::TargetKind;
 use calibench_model::boards::Board;
@@ -8,14 +9,14 @@ use calibench_photographs::{MeasuredBoards, measured_boards, method_info};
 
 use super::super::context::{Context, finder};
 use super::super::notes::say_notes;
-use super::super::photos::{of_one_camera, say_turns};
+use super::super::photos::of_one_camera;
 use super::super::progress::Progress;
 use super::{Judge, field_of};
 use crate::failure::Failure;
 
 impl Judge {
     /// All points of all photographs in the hands of all methods, and what is in doubt of where the board was found.
-    pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<(Material, Vec<String>), Failure> {
+    pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<(Material, Vec<String>, Reading), Failure> {
         let finder = finder(board)?;
         let texts = if self.methods.is_empty() { usual_methods(finder.kind(), self.camera.is_some()) } else { self.methods.clone() };
         let methods = context.methods_of_boards(&texts, finder.kind())?;
@@ -24,11 +25,11 @@ impl Judge {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
         let progress = Progress::start("judge", self.photos.len() as u64, context.quiet);
-        say_turns(&self.photos)?;
-        let measured = measured_boards(&self.photos, &finder, &methods, &|| progress.step()).map_err(of_one_camera)?;
+        let reader = self.read.of_one_camera(&self.photos, self.only_size)?;
+        let measured = measured_boards(&reader, &finder, &methods, &|| progress.step()).map_err(of_one_camera)?;
         let MeasuredBoards { trial, size, doubts } = measured;
-        let seen = self.photos.len() - trial.missed_views.len();
-        progress.finish(&format!("the board was found in {seen} of {} photographs", self.photos.len()));
+        let seen = reader.photos().len() - trial.missed_views.len();
+        progress.finish(&format!("the board was found in {seen} of {} photographs", reader.photos().len()));
         for (view, why) in &trial.missed_views {
             say!("{view}: {why}");
         }
@@ -38,6 +39,6 @@ impl Judge {
         }
         say_notes(&methods);
         let infos: Vec<_> = methods.iter().map(method_info).collect();
-        Ok((Material::new(&trial, &infos, field_of(board)?, size), doubts))
+        Ok((Material::new(&trial, &infos, field_of(board)?, size), doubts, reader.reading()))
     }
 }

@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::inputs::read_measured;
 use crate::notes::say_notes;
 use crate::output;
-use crate::photos::say_turns;
+use crate::photos::AsRead;
 use crate::progress::Progress;
 
 mod eccentricity;
@@ -35,6 +35,8 @@ pub struct Measure {
     /// The method, as in forstner:window=15; several are measured one after the other. Kinds of targets before it limit it to these, as in disc+square=centroid
     #[arg(short, long = "method", value_name = "METHOD", default_value = "forstner")]
     methods: Vec<String>,
+    #[command(flatten)]
+    read: AsRead,
     #[command(flatten)]
     eccentricity: Eccentricity,
     /// Where the result goes [default: standard output]
@@ -60,9 +62,9 @@ impl Measure {
         // What is wrong with the photographs' names is said before any is read.
         photos_of(&points, &self.photos)?;
         let offsets = self.eccentricity.offsets(&points)?;
-        say_turns(&self.photos)?;
+        let reader = self.read.reader(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
-        let found = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
+        let found = measure_points(&points, &reader, &methods, &|| progress.step())?;
         let rows = || rows(&points, &methods, &found, &offsets).chain(rows_of_nobody(&points, &nobodys));
         if output.is_some() || !self.answered.json {
             deliver(output.as_ref(), |file| write_measured(file, rows()))?;

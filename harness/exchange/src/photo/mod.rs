@@ -2,7 +2,9 @@
 
 mod bands;
 mod budget;
+mod container;
 mod dense;
+mod depth;
 mod filters;
 pub mod grey;
 mod helped;
@@ -17,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_model::Image;
 use calibench_model::camera::ImageSize;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
 use tiff::encoder::{TiffEncoder, colortype};
 
@@ -26,6 +28,7 @@ use crate::atomic::write_atomically;
 pub use bands::encode_png;
 pub use budget::MOST_BYTES;
 pub use dense::encode_png_densely;
+pub use depth::{DeepLevels, Depth, read_with_levels};
 pub use levels::{Levels, read_levels};
 pub use turn::Turn;
 
@@ -60,6 +63,20 @@ pub enum PhotoError {
         /// The file.
         path: PathBuf,
     },
+    /// A TIFF, or a camera's raw file, which begins with a reduced copy of what it holds.
+    #[error(
+        "{}: its first image has {} x {} px and is a thumbnail of another in the file, of {} x {} px; expected one image: develop a raw file, or export the page, \
+         as PNG or TIFF",
+        path.display(), size.0, size.1, of.0, of.1
+    )]
+    Thumbnail {
+        /// The file.
+        path: PathBuf,
+        /// Columns and rows of the first image, px.
+        size: (u32, u32),
+        /// Those of the largest, px.
+        of: (u32, u32),
+    },
     /// More than the memory that photographs may take while they are read.
     #[error(
         "{}: {width} x {height} px take {} MB while they are read, more than {} MB; cut the image into tiles or save it with 8 bits",
@@ -86,18 +103,50 @@ pub struct Photo {
     pub turn: Option<Turn>,
 }
 
+/// How pixels of files become images: alike for all photographs that one camera took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// Pixels stay where the file has them, which is where the sensor had them, whatever orientation it asks for.
+    pub as_stored: bool,
+    /// So many of the 16 bits of a level are in use, the lower ones: the largest number of them is white.
+    pub bits: u8,
+}
+
+impl Default for Reading {
+    /// Upright, and all bits.
+    fn default() -> Self {
+        Self { as_stored: false, bits: 16 }
+    }
+}
+
+impl Reading {
+    /// What is white, a fraction of the largest level that the bytes can hold, if it is another.
+    fn white(self, colour: ColorType) -> Option<f32> {
+        (is_deep(colour) && self.bits < 16).then(|| f32::from(depth::most(self.bits)) / 65535.0)
+    }
+}
+
 /// Reads a photograph as grey values. The format is found by content; all bits of 16-bit images are kept.
 ///
-/// Colour becomes luma with the weights .299, .587, .114 of Rec. 601, in floating point; transparency is ignored. The orientation that EXIF (JPEG, PNG) or
+/// Colour becomes luma with the weights .299, .587, .114 of Rec. 601, in floating point; transparency is ignored. White is 1, of a PNM what it calls the largest
+/// value. The orientation that EXIF (JPEG, PNG) or
 /// the TIFF tag asks for is applied, as OpenCV's `imread` does: columns and rows are those of the image as it is seen.
 ///
 /// Memory: at most [`MOST_BYTES`] for all photographs that are being decoded at a time, others wait; 4 bytes a pixel once read, 8 while it is turned. The file itself is not counted.
 /// Of a PNG that is not interlaced the pixels are never there as a whole.
 ///
 /// # Errors
-/// A file that is missing, no image, cut short, or too large.
+/// A file that is missing, no image, cut short, too large, or that begins with a thumbnail.
 pub fn read_photo(path: &Path) -> Result<Photo, PhotoError> {
-    decode(path, &mut BufReader::new(open(path)?))
+    read_photo_as(path, Reading::default())
+}
+
+/// The same, read as its set is.
+///
+/// # Errors
+/// As [`read_photo`].
+pub fn read_photo_as(path: &Path, reading: Reading) -> Result<Photo, PhotoError> {
+    decode(path, &mut BufReader::new(open(path)?), reading)
 }
 
 /// What images are read from. Decoders are compiled for every type that they read from, and are large: this one is for all.
@@ -119,55 +168,70 @@ fn open(path: &Path) -> Result<File, PhotoError> {
     Ok(file)
 }
 
-/// How [`read_photo`] turns a photograph, from its head alone.
+/// What the head of a photograph says of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Head {
+    /// Columns and rows as the file has them.
+    pub stored: ImageSize,
+    /// How [`read_photo`] turns it.
+    pub turn: Option<Turn>,
+    /// Whether it has more than 8 bits a channel.
+    pub is_deep: bool,
+}
+
+impl Head {
+    /// Columns and rows of the photograph as it is read.
+    pub fn size(&self, reading: Reading) -> ImageSize {
+        let ImageSize { width, height } = self.stored;
+        let turned = self.turn.is_some_and(Turn::is_on_its_side) && !reading.as_stored;
+        if turned { ImageSize { width: height, height: width } } else { self.stored }
+    }
+}
+
+/// What the head of a photograph says of it; pixels are not read.
 ///
 /// # Errors
-/// A file that is missing or no image.
-pub fn turn_of(path: &Path) -> Result<Option<Turn>, PhotoError> {
+/// A file that is missing or no image, or that begins with a thumbnail.
+pub fn head_of(path: &Path) -> Result<Head, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let mut head = Vec::new();
     open(path)?.take(HEAD).read_to_end(&mut head).map_err(in_file)?;
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
-    match turn_in(&mut Cursor::new(head)) {
-        Ok(turn) => Ok(turn),
+    let is_tiff = reader(&mut Cursor::new(&head)).is_ok_and(|reader| reader.format() == Some(ImageFormat::Tiff));
+    match head_in(&mut Cursor::new(&head)) {
+        Ok(head) if !is_tiff => Ok(head),
         // What a TIFF says of itself may stand at its end.
-        Err(_) => turn_in(&mut BufReader::new(open(path)?)).map_err(content),
+        _ => {
+            let mut input = BufReader::new(open(path)?);
+            is_no_thumbnail(path, &mut input)?;
+            head_in(&mut input).map_err(content)
+        }
     }
 }
 
-fn turn_in(input: &mut dyn Input) -> Result<Option<Turn>, ImageError> {
+fn head_in(input: &mut dyn Input) -> Result<Head, ImageError> {
     let mut reader = reader(input)?;
     reader.limits(budget::limits(MOST_BYTES));
-    Ok(Turn::of(reader.into_decoder()?.orientation()?))
+    let mut decoder = reader.into_decoder()?;
+    let (width, height) = decoder.dimensions();
+    Ok(Head { stored: ImageSize { width, height }, turn: Turn::of(decoder.orientation()?), is_deep: is_deep(decoder.color_type()) })
 }
 
-/// Whether a photograph has more than 8 bits a channel, from its head alone.
-///
-/// # Errors
-/// A file that is missing or no image.
-pub fn is_deep(path: &Path) -> Result<bool, PhotoError> {
-    let colour = in_head(path, |decoder| Ok(decoder.color_type()))?;
-    Ok(colour.bytes_per_pixel() > colour.channel_count())
+fn is_no_thumbnail(path: &Path, input: &mut dyn Input) -> Result<(), PhotoError> {
+    let found = container::thumbnail(input);
+    found.map_or(Ok(()), |[size, of]| Err(PhotoError::Thumbnail { path: path.to_owned(), size, of }))
+}
+
+fn is_deep(colour: ColorType) -> bool {
+    colour.bytes_per_pixel() > colour.channel_count()
 }
 
 /// Columns and rows of a photograph as [`read_photo`] gives it, from its head alone.
 ///
 /// # Errors
-/// A file that is missing or no image.
+/// As [`head_of`].
 pub fn size_of(path: &Path) -> Result<ImageSize, PhotoError> {
-    in_head(path, |decoder| {
-        let ((width, height), turn) = (decoder.dimensions(), Turn::of(decoder.orientation()?));
-        Ok(if turn.is_some_and(Turn::is_on_its_side) { ImageSize { width: height, height: width } } else { ImageSize { width, height } })
-    })
-}
-
-/// What `look` finds in the head of a photograph.
-fn in_head<T>(path: &Path, look: impl FnOnce(&mut dyn ImageDecoder) -> Result<T, ImageError>) -> Result<T, PhotoError> {
-    let content = |source| PhotoError::Content { path: path.to_owned(), source };
-    let mut input = BufReader::new(open(path)?);
-    let mut reader = reader(&mut input).map_err(|error| content(error.into()))?;
-    reader.limits(budget::limits(MOST_BYTES));
-    look(&mut reader.into_decoder().map_err(content)?).map_err(content)
+    Ok(head_of(path)?.size(Reading::default()))
 }
 
 /// As [`read_photo`], from bytes; `path` is the name in errors.
@@ -175,23 +239,30 @@ fn in_head<T>(path: &Path, look: impl FnOnce(&mut dyn ImageDecoder) -> Result<T,
 /// # Errors
 /// As [`read_photo`].
 pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
-    decode(path, &mut Cursor::new(bytes))
+    decode(path, &mut Cursor::new(bytes), Reading::default())
 }
 
-fn decode(path: &Path, input: &mut dyn Input) -> Result<Photo, PhotoError> {
+fn decode(path: &Path, input: &mut dyn Input, reading: Reading) -> Result<Photo, PhotoError> {
     let in_rows = rows::is_in_rows(input).map_err(|source| PhotoError::File { path: path.to_owned(), source })?;
-    let (image, turn) = if in_rows {
+    if in_rows {
         let (decoder, turn, share) = begun(path, input, budget::needed_in_rows)?;
         let head = (decoder.dimensions(), decoder.color_type());
         drop(decoder);
         let image = rows::grey_of(input, head, share).map_err(|source| PhotoError::Content { path: path.to_owned(), source })?;
-        (image, turn)
-    } else {
-        let (image, turn, share) = decoded(path, input)?;
-        (helped::grey_of(image, share), turn)
-    };
-    let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
-    Ok(Photo { image, turn })
+        return Ok(finished(image, reading.white(head.1), turn, reading));
+    }
+    let (image, turn, share) = decoded(path, input)?;
+    let white = depth::white(input, image.color()).or_else(|| reading.white(image.color()));
+    Ok(finished(helped::grey_of(image, share), white, turn, reading))
+}
+
+/// Grey values of which `white` is 1, turned if wanted.
+fn finished(mut image: Image<'static>, white: Option<f32>, turn: Option<Turn>, reading: Reading) -> Photo {
+    if let Some(white) = white {
+        image.grey_mut().iter_mut().for_each(|grey| *grey /= white);
+    }
+    let turn = turn.filter(|_| !reading.as_stored);
+    Photo { image: if let Some(turn) = turn { turn.apply(&image) } else { image }, turn }
 }
 
 /// The pixels as they stand in the file, how they are to be turned, and the part of the memory that they may take.
@@ -214,6 +285,7 @@ fn begun<'i>(
         // The decoder would fill what is missing with grey.
         return Err(PhotoError::Truncated { path: path.to_owned() });
     }
+    is_no_thumbnail(path, input)?;
     let mut reader = reader(input).map_err(in_file)?;
     reader.limits(budget::limits(MOST_BYTES));
     let mut decoder = reader.into_decoder().map_err(content)?;

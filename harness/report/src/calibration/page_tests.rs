@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_calibrate::Calibration;
+use calibench_exchange::Reading;
 use serde_json::Value;
 
 use super::tests::{Row, number, rotation, rows, written};
@@ -115,7 +116,7 @@ fn what_is_enlarged_is_what_was_measured() {
             }
             photo.save(path).unwrap();
         }
-        let photos: Vec<Pictured<'_>> = paths.iter().map(|(name, path)| (name.as_str(), path.as_path())).collect();
+        let photos: Vec<Pictured<'_>> = paths.iter().map(|(name, path)| (name.as_str(), path.as_path(), Reading::default())).collect();
         let html = page(calibration, &photos);
         let patches: Vec<&str> = html.split("<figure class=\"patch\" data-k=\"").skip(1).collect();
         assert_eq!(patches.len(), 150);

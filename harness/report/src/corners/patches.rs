@@ -6,7 +6,7 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_adjust::Use;
-use calibench_exchange::read_photo;
+use calibench_exchange::{Reading, read_photo_as};
 use calibench_model::{Image, PixelPoint};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -16,8 +16,8 @@ use super::Corner;
 use crate::html::escaped;
 use crate::plain;
 
-/// A photograph by the name of its image.
-pub type Pictured<'a> = (&'a str, &'a Path);
+/// A photograph by the name of its image, and how it was read.
+pub type Pictured<'a> = (&'a str, &'a Path, Reading);
 
 /// Columns and rows of an enlarged part, px: odd, so that one is in the middle.
 const SIDE: i64 = 31;
@@ -30,8 +30,8 @@ pub(crate) fn patches(corners: &[Corner<'_>], photos: &[Pictured<'_>]) -> Vec<(u
     }
     let one = |wanted: Vec<(usize, &Corner<'_>)>| {
         let name = wanted[0].1.name;
-        let Some((_, path)) = photos.iter().find(|(photo, _)| *photo == name) else { return Vec::new() };
-        let Ok(photo) = read_photo(path) else { return Vec::new() };
+        let Some((_, path, reading)) = photos.iter().find(|(photo, ..)| *photo == name) else { return Vec::new() };
+        let Ok(photo) = read_photo_as(path, *reading) else { return Vec::new() };
         wanted.iter().map(|(key, corner)| (*key, figure(&photo.image, corner))).collect()
     };
     let mut all: Vec<(usize, String)> = by_image.into_values().collect::<Vec<_>>().into_par_iter().flat_map_iter(one).collect();
