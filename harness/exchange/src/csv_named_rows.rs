@@ -1,14 +1,14 @@
 //! Sheets of named rows and numbers as CSV, with errors that say line and column.
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use calibench_model::escape;
 use csv::StringRecord;
 
-use crate::points::{Names, PointFileError, csv_error, line_of};
+use crate::bounded;
+use crate::points::{Names, PointFileError, as_a_whole, csv_error, line_of};
 
 /// The columns of a kind of sheet.
 pub(crate) struct Form {
@@ -45,25 +45,32 @@ impl Form {
     /// Reads a file.
     pub(crate) fn read<T>(&self, path: &Path, made: impl FnMut(&str, Row) -> Result<T, PointFileError>) -> Result<Vec<T>, PointFileError> {
         let name = path.display().to_string();
-        let file = File::open(path).map_err(|error| wrong(&name, None, None, error.to_string()))?;
-        self.parse(&name, file, made)
+        let text = bounded::table(path).map_err(|error| as_a_whole(&name, &error))?;
+        self.parse_text(&name, &text, made)
     }
 
     /// Reads a text and makes something of each row; `file` is its name in errors.
     pub(crate) fn parse<T>(
         &self,
         file: &str,
-        mut input: impl Read,
+        input: impl Read,
+        made: impl FnMut(&str, Row) -> Result<T, PointFileError>,
+    ) -> Result<Vec<T>, PointFileError> {
+        self.parse_text(file, &bounded::table_of(input).map_err(|error| as_a_whole(file, &error))?, made)
+    }
+
+    fn parse_text<T>(
+        &self,
+        file: &str,
+        text: &[u8],
         mut made: impl FnMut(&str, Row) -> Result<T, PointFileError>,
     ) -> Result<Vec<T>, PointFileError> {
-        let mut text = Vec::new();
-        input.read_to_end(&mut text).map_err(|error| wrong(file, None, None, error.to_string()))?;
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(&text[..]);
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(text);
         let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
         let places = self.places(file, &header)?;
         let (mut rows, mut seen, mut lines, mut record) = (Vec::new(), Names::default(), Vec::new(), StringRecord::new());
         while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
-            let line = line_of(&text, &record);
+            let line = line_of(text, &record);
             let row = self.row(&Cells { file, places: &places, record: &record, line })?;
             let place = seen.place(&row.name);
             if let Some(earlier) = lines.get(place) {

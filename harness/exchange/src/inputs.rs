@@ -65,7 +65,9 @@ fn holds(folder: &Path, file: (u64, u64)) -> bool {
 fn real(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok().or_else(|| {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Some(real(parent).filter(|_| parent != path)?.join(path.file_name()?))
+        // The current folder itself may be gone.
+        let name = path.file_name().filter(|_| parent != path)?;
+        Some(real(parent)?.join(name))
     })
 }
 

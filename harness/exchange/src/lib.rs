@@ -1,6 +1,7 @@
 //! Files of other tools: cameras, image coordinates, control, stations and photographs; testfields for the printer.
 
 pub mod atomic;
+pub mod bounded;
 pub mod camera;
 pub mod control;
 mod csv_named_rows;
@@ -18,11 +19,11 @@ pub mod st_map;
 pub mod stations;
 pub mod table;
 
-pub use atomic::OutputFile;
+pub use atomic::{OutputFile, at};
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use fingerprint::Fingerprint;
-pub use folder::{NewFile, NewFolder, OutputFolder};
+pub use folder::{FilledFolder, NewFile, NewFolder, OutputFolder};
 pub use inputs::Inputs;
 pub use photo::{
     DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,

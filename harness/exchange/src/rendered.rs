@@ -1,12 +1,12 @@
 //! Which images a folder of renders holds: the list that `render` writes beside them.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
 use calibench_model::escape;
 use csv::StringRecord;
 
+use crate::bounded;
 use crate::fingerprint::Fingerprint;
 use crate::points::{Names, PointFileError, csv_error, line_of};
 use crate::table::write_table;
@@ -53,7 +53,8 @@ pub fn read_rendered(folder: &Path) -> Result<Vec<RenderedImage>, PointFileError
     let file = path.display().to_string();
     let wrong =
         |line, column: Option<&str>, problem| PointFileError { file: file.clone(), line, column: column.map(str::to_owned), problem };
-    let text = fs::read(&path).map_err(|error| wrong(None, None, format!("{error}; expected the list that `calibench render` writes")))?;
+    let text =
+        bounded::table(&path).map_err(|error| wrong(None, None, format!("{error}; expected the list that `calibench render` writes")))?;
     let mut reader = csv::Reader::from_reader(&text[..]);
     if *reader.headers().map_err(|error| csv_error(&file, &error))? != COLUMNS[..] {
         return Err(wrong(Some(1), None, format!("expected the header {}", COLUMNS.join(","))));
@@ -83,6 +84,8 @@ fn read(record: &StringRecord) -> Result<RenderedImage, &'static str> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use calibench_model::Image;
 

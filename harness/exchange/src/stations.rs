@@ -5,6 +5,7 @@ use std::path::Path;
 
 use calibench_model::Pose;
 
+use crate::bounded;
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
 
@@ -46,7 +47,7 @@ pub struct ObservedStation {
 /// As [`read_stations`]; a standard deviation that is not positive, a group that is there in part, a file without any standard deviation.
 pub fn read_observed_stations(path: &Path) -> Result<Vec<ObservedStation>, PointFileError> {
     let name = path.display().to_string();
-    let text = std::fs::read(path).map_err(|error| wrong(&name, None, None, error.to_string()))?;
+    let text = bounded::table(path).map_err(|error| wrong(&name, None, None, error.to_string()))?;
     parse_observed_stations(&name, &text)
 }
 

@@ -8,6 +8,7 @@ mod digits;
 mod errors;
 mod interned;
 pub mod judgement;
+mod limited;
 pub mod names;
 mod order;
 pub mod parts;

@@ -1,15 +1,15 @@
 //! The tables of a run as they lie in its folder: compressed CSV. Every reader of records goes through here.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use flate2::bufread::MultiGzDecoder;
 use thiserror::Error;
 
 use crate::adjustments::{self, Row};
 use crate::cells::RecordError;
 use crate::judgement::{self, RECORDED_JUDGEMENT};
+use crate::limited::unpacked;
 use crate::names::PART;
 use crate::points::{self, RecordHead};
 use crate::results::{MethodInfo, Trial};
@@ -122,7 +122,7 @@ pub fn whole(folder: &Path) -> Result<(), StoredError> {
 /// As [`open()`], of a run or of a part of one.
 pub(crate) fn decompressed(path: &Path) -> Result<impl Read + use<>, StoredError> {
     let file = File::open(path).map_err(|source| StoredError::File { path: path.to_owned(), source })?;
-    Ok(MultiGzDecoder::new(BufReader::with_capacity(1 << 16, file)))
+    unpacked(file).map_err(|source| StoredError::File { path: path.to_owned(), source })
 }
 
 /// Reads the points of the run in `folder`, as [`points::read_records`] hands them on.

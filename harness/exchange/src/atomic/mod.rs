@@ -185,7 +185,21 @@ fn replace<E: From<io::Error>>(path: &Path, place: &Path, write: impl FnOnce(&mu
     let rights = fs::metadata(place).map_or(Ok(()), |old| keep_rights(file.as_file(), &old));
     rights.and_then(|()| file.as_file().sync_data()).map_err(|error| at(path, &error))?;
     file.persist(place).map_err(|error| at(path, &error.error))?;
-    Ok(())
+    Ok(sync_folder(folder_of(place))?)
+}
+
+/// Puts the names of a folder's entries on the disk: before that, a power cut may undo a rename. Nothing is done where folders cannot be opened or synced.
+///
+/// # Errors
+/// What the disk refuses, with the folder's path.
+pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
+    use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    #[cfg(test)]
+    tests::SYNCED.with_borrow_mut(|synced| synced.push(folder.to_owned()));
+    match fs::File::open(folder).and_then(|open| open.sync_all()) {
+        Err(error) if !cfg!(unix) || matches!(error.kind(), InvalidInput | PermissionDenied | Unsupported) => Ok(()),
+        synced => synced.map_err(|error| at(folder, &error)),
+    }
 }
 
 /// What the system says of a temporary file, without the name of that file.
@@ -223,8 +237,8 @@ impl<W: Write> Write for Named<'_, W> {
     }
 }
 
-/// An error of the file system with the path that it is about.
-pub(crate) fn at(path: &Path, error: &io::Error) -> io::Error {
+/// An error of the file system with the path that it is about, which the system does not say.
+pub fn at(path: &Path, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 

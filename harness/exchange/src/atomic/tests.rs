@@ -1,11 +1,34 @@
+use std::cell::RefCell;
 use std::fs;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::write_atomically;
 
 fn write(path: &Path, text: &str) -> io::Result<()> {
     write_atomically(path, |file| file.write_all(text.as_bytes()))
+}
+
+thread_local! {
+    /// The folders that this thread has put on the disk.
+    pub static SYNCED: RefCell<Vec<PathBuf>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A power cut after the file's name was given must not take it away again.
+#[test]
+fn the_folder_of_a_new_name_is_put_on_the_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    for place in [folder.path().join("out.csv"), folder.path().join("sub/page")] {
+        SYNCED.take();
+        match place.parent() {
+            Some(parent) if parent == folder.path() => write(&place, "new").unwrap(),
+            parent => {
+                let folder = crate::OutputFolder::open(parent.unwrap()).unwrap();
+                folder.replace::<io::Error>(|folder| folder.write("page", |file| file.write_all(b"new"))).unwrap();
+            }
+        }
+        assert!(SYNCED.take().iter().any(|synced| synced.canonicalize().unwrap() == folder.path().canonicalize().unwrap()), "{place:?}");
+    }
 }
 
 fn read(path: &Path) -> String {

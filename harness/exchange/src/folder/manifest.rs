@@ -8,6 +8,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::at;
+use super::owner::Owner;
+use crate::bounded;
 
 /// The list's name in its folder.
 pub const MANIFEST: &str = ".calibench-manifest";
@@ -17,6 +19,8 @@ const HEAD: &str = "# calibench wrote these files and replaces no others here: b
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Manifest {
     files: BTreeMap<String, BTreeSet<String>>,
+    /// Whose folder it is, where that is known.
+    pub owner: Option<Owner>,
 }
 
 /// What an entry of a folder is; links are not followed.
@@ -44,7 +48,7 @@ pub(super) fn entries(folder: &Path) -> io::Result<Vec<Entry>> {
         here.sort_by_key(fs::DirEntry::file_name);
         for entry in here {
             let name = entry.file_name().to_str().and_then(|name| above.map(|above| format!("{above}{name}")));
-            let kind = entry.file_type()?;
+            let kind = entry.file_type().map_err(|error| at(&entry.path(), &error))?;
             let kind = if kind.is_dir() {
                 Kind::Folder
             } else if kind.is_file() {
@@ -103,7 +107,7 @@ impl Manifest {
             Ok(found) if !found.is_file() => return Err(wrong(&path, "is no file")),
             Ok(_) => {}
         }
-        let text = fs::read_to_string(&path).map_err(|error| at(&path, &error))?;
+        let text = bounded::text(&path).map_err(|error| at(&path, &error))?;
         Self::parse(&text)
             .map(Some)
             .map_err(|line| wrong(&path, &format!("line {line}: expected a digest, two spaces and the name of a file")))
@@ -112,7 +116,7 @@ impl Manifest {
     /// # Errors
     /// The number of the first line that is wrong.
     fn parse(text: &str) -> Result<Self, usize> {
-        let mut manifest = Self::default();
+        let mut manifest = Self { owner: Owner::read(text), ..Self::default() };
         for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.starts_with('#')) {
             let is_digest = |digest: &str| digest.len() == 64 && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
             let (digest, name) = line.split_once("  ").filter(|(digest, name)| is_digest(digest) && !name.is_empty()).ok_or(index + 1)?;
@@ -125,7 +129,8 @@ impl Manifest {
         let one =
             |(name, digests): (&String, &BTreeSet<String>)| digests.iter().map(|digest| format!("{digest}  {name}\n")).collect::<String>();
         let lines = self.files.iter().map(one);
-        format!("{HEAD}\n{}", lines.collect::<String>())
+        let owner = self.owner.as_ref().map(Owner::text).unwrap_or_default();
+        format!("{HEAD}\n{owner}{}", lines.collect::<String>())
     }
 
     /// Writes it into `folder`.

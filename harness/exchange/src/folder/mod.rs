@@ -5,8 +5,10 @@
 
 mod foreign_folder;
 mod intact;
+mod left_over;
 mod manifest;
 mod new;
+mod owner;
 mod place;
 mod scratch;
 
@@ -20,13 +22,16 @@ pub use intact::intact;
 use manifest::Manifest;
 pub use manifest::{MANIFEST, digest};
 pub use new::{NewFile, NewFolder};
+use owner::Owner;
+pub use owner::is_project;
 use place::Place;
 use scratch::Scratch;
 
 /// A folder that a command writes, and replaces when it is run again.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OutputFolder {
     path: PathBuf,
+    owner: Option<Owner>,
 }
 
 impl OutputFolder {
@@ -37,7 +42,24 @@ impl OutputFolder {
     /// the folder that the process is in; what the file system refuses.
     pub fn open(path: &Path) -> io::Result<Self> {
         Place::of(path)?.check()?;
-        Ok(Self { path: path.to_owned() })
+        Ok(Self { path: path.to_owned(), owner: None })
+    }
+
+    /// The same as a folder of `command`, for a project if there is one: its manifest says so.
+    ///
+    /// # Errors
+    /// A folder of another command, or of another project.
+    pub fn owned_by(self, command: &str, project: Option<&Path>) -> io::Result<Self> {
+        let place = Place::of(&self.path)?;
+        let owned = Self { owner: Some(Owner::new(command, &place.path(), project)), ..self };
+        owned.is_its_own(&place, Manifest::read(&place.path())?.as_ref())?;
+        Ok(owned)
+    }
+
+    fn is_its_own(&self, place: &Place, there: Option<&Manifest>) -> io::Result<()> {
+        let (Some(owner), Some(there)) = (&self.owner, there.and_then(|there| there.owner.as_ref())) else { return Ok(()) };
+        let refusal = there.refuses(owner, &place.path());
+        refusal.map_or(Ok(()), |why| Err(io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: {why}", self.path.display()))))
     }
 
     /// Where it is.
@@ -51,16 +73,46 @@ impl OutputFolder {
     /// # Errors
     /// As [`Self::open`], what `fill` returns, and what the file system refuses.
     pub fn replace<E: From<io::Error>>(&self, fill: impl FnOnce(&NewFolder) -> Result<(), E>) -> Result<(), E> {
+        Ok(self.filled(fill)?.put()?)
+    }
+
+    /// The same but for putting it there: of several folders all can be filled before the first is replaced.
+    ///
+    /// # Errors
+    /// As [`Self::replace`].
+    pub fn filled<E: From<io::Error>>(&self, fill: impl FnOnce(&NewFolder) -> Result<(), E>) -> Result<FilledFolder, E> {
         let made = MadeFolders::above(&self.path)?;
         let place = Place::of(&self.path)?;
-        place.check()?;
+        self.is_its_own(&place, place.check()?.as_ref())?;
         let scratch = Scratch::new(&place.parent, &place.name, &self.path)?;
         let new = NewFolder::new(scratch.new_folder(), self.path.clone());
         fill(&new)?;
-        Manifest::of(new.path())?.write(new.path())?;
+        let mut manifest = Manifest::of(new.path())?;
+        manifest.owner.clone_from(&self.owner);
+        manifest.write(new.path())?;
         sync(new.path()).map_err(|error| at(&self.path, &error))?;
-        // Whatever came into the old folder while the new one was filled is seen here.
+        Ok(FilledFolder { output: self.clone(), place, scratch, made })
+    }
+}
+
+/// A new folder that is whole and not yet in its place; dropped, it is gone.
+#[derive(Debug)]
+pub struct FilledFolder {
+    output: OutputFolder,
+    place: Place,
+    scratch: Scratch,
+    made: MadeFolders,
+}
+
+impl FilledFolder {
+    /// Puts it in the place of the old one.
+    ///
+    /// # Errors
+    /// What came into the old folder while the new one was filled, and what the file system refuses.
+    pub fn put(self) -> io::Result<()> {
+        let Self { output, place, scratch, made } = self;
         let old = place.check()?;
+        output.is_its_own(&place, old.as_ref())?;
         scratch.put(&place.path(), old.as_ref())?;
         made.keep();
         Ok(())
@@ -81,6 +133,7 @@ fn sync(folder: &Path) -> io::Result<()> {
 }
 
 /// Folders that were made for a result; those that are empty go when there is none.
+#[derive(Debug)]
 struct MadeFolders(Vec<PathBuf>);
 
 impl MadeFolders {

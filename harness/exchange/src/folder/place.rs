@@ -17,6 +17,7 @@ const OLD_RECORDS: [&str; 2] = ["records.csv", "scenario.toml"];
 const NAMED: usize = 5;
 
 /// The place of a folder: an existing folder above it, and its name there.
+#[derive(Debug)]
 pub(super) struct Place {
     pub parent: PathBuf,
     pub name: String,
@@ -141,7 +142,9 @@ fn obstacle(entry: &Entry, manifest: &Manifest) -> io::Result<Option<&'static st
     Ok(match entry.kind {
         Kind::File if name == MANIFEST => None,
         Kind::File if !manifest.lists(name) => Some(""),
-        Kind::File if fs::metadata(&entry.path)?.permissions().readonly() => Some(" (write-protected)"),
+        Kind::File if fs::metadata(&entry.path).map_err(|error| at(&entry.path, &error))?.permissions().readonly() => {
+            Some(" (write-protected)")
+        }
         Kind::File if !manifest.has(name, &digest(&entry.path)?) => Some(" (changed)"),
         Kind::File => None,
         Kind::Folder if manifest.has_folder(name) => None,

@@ -1,23 +1,26 @@
 //! Where a new folder is filled, beside the old one.
 
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::at;
+use super::left_over::{Anchor, clear, is_folder, seal};
 use super::manifest::{Kind, MANIFEST, Manifest, entries};
+use crate::atomic::sync_folder;
 
-const PREFIX: &str = ".calibench-partial-";
-/// Held as long as the process that fills the new folder lives; names what is to be replaced.
-const LOCK: &str = "lock";
-const NEW: &str = "new";
+pub(super) const PREFIX: &str = ".calibench-partial-";
+/// Held as long as the process that fills the new folder lives; says who made it, and names what is to be replaced.
+pub(super) const LOCK: &str = "lock";
+pub(super) const NEW: &str = "new";
 /// Where the old folder waits between two renames, on file systems that cannot exchange two folders at once.
-const OLD: &str = "old";
+pub(super) const OLD: &str = "old";
 
 /// A folder beside the one to be replaced: `lock` tells that it is in use, `new` is what is filled.
 #[derive(Debug)]
 pub(super) struct Scratch {
     folder: PathBuf,
+    anchor: Anchor,
     _lock: File,
 }
 
@@ -28,17 +31,23 @@ impl Scratch {
     /// What the file system refuses.
     pub fn new(parent: &Path, name: &str, shown: &Path) -> io::Result<Self> {
         clear(parent)?;
-        loop {
-            let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(|error| at(shown, &error))?.keep();
-            if let Some(lock) = lock(&folder, name).map_err(|error| {
-                remove(&folder).ok();
-                at(shown, &error)
-            })? {
-                let scratch = Self { folder, _lock: lock };
-                fs::create_dir(scratch.new_folder()).map_err(|error| at(shown, &error))?;
-                return Ok(scratch);
-            }
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(PREFIX);
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // Nobody else puts anything into it.
+            builder.permissions(fs::Permissions::from_mode(0o700));
         }
+        let made = builder.tempdir_in(parent).map_err(|error| at(shown, &error))?;
+        let fill = || {
+            let anchor = Anchor::at(made.path())?;
+            let lock = lock(&anchor, made.path(), name)?;
+            fs::create_dir(made.path().join(NEW))?;
+            Ok((anchor, lock))
+        };
+        let (anchor, lock) = fill().map_err(|error| at(shown, &error))?;
+        Ok(Self { folder: made.keep(), anchor, _lock: lock })
     }
 
     /// What is filled.
@@ -52,24 +61,31 @@ impl Scratch {
     /// What the file system refuses.
     pub fn put(self, place: &Path, old: Option<&Manifest>) -> io::Result<()> {
         let new = self.new_folder();
+        let named = |error: io::Error| at(place, &error);
         let about = match fs::metadata(place) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::rename(&new, place) {
                 Err(error) if is_there(&error) => return self.put(place, None),
-                put => return put.map_err(|error| at(place, &error)),
+                put => return put.map_err(named).and_then(|()| synced(place)),
             },
-            about => about.map_err(|error| at(place, &error))?,
+            about => about.map_err(named)?,
         };
-        fs::set_permissions(&new, about.permissions())?;
+        fs::set_permissions(&new, about.permissions()).map_err(named)?;
         // Where none was seen another process of ours came first: what it wrote is the old folder now.
         let came = if old.is_none() { Manifest::read(place)? } else { None };
-        exchange(&new, place, &self.folder.join(OLD)).map_err(|error| at(place, &error))?;
-        remove_listed(&new, old.or(came.as_ref()).unwrap_or(&Manifest::default()))?;
+        exchange(&new, place, &self.folder.join(OLD)).map_err(named)?;
+        synced(place)?;
+        remove_listed(&new, old.or(came.as_ref()).unwrap_or(&Manifest::default())).map_err(named)?;
         if new.exists() {
             // It came after the last look at the old folder.
             give_back(&new, place)?;
         }
         Ok(())
     }
+}
+
+/// A folder has its new name on the disk, too.
+fn synced(place: &Path) -> io::Result<()> {
+    place.parent().map_or(Ok(()), sync_folder)
 }
 
 /// Whether a folder was not renamed because there is one that holds something.
@@ -79,72 +95,38 @@ fn is_there(error: &io::Error) -> bool {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        remove(&self.folder).ok();
+        remove(&self.anchor, &self.folder).ok();
     }
 }
 
-/// The lock of a new scratch folder; `None` if another process took the folder for one that was left, and removed it.
-fn lock(folder: &Path, name: &str) -> io::Result<Option<File>> {
-    let path = folder.join(LOCK);
-    let mut file = match File::create_new(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        other => other?,
-    };
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => return Ok(None),
-        // Where there are no locks, nothing that was left is ever removed.
-        Ok(()) | Err(TryLockError::Error(_)) => {}
-    }
-    if !path.exists() {
-        return Ok(None);
-    }
-    file.write_all(name.as_bytes())?;
-    Ok(Some(file))
+/// The lock of a new scratch folder. Until its words stand in it nobody takes the folder for one that was left.
+fn lock(anchor: &Anchor, folder: &Path, name: &str) -> io::Result<File> {
+    let mut file = File::create_new(folder.join(LOCK))?;
+    // Where there are no locks, nothing that was left is ever removed.
+    file.try_lock().ok();
+    let seal = seal(anchor, &file.metadata()?).unwrap_or_default();
+    file.write_all(format!("{seal}{name}").as_bytes())?;
+    Ok(file)
 }
 
-/// Removes from `parent` what killed processes left half written, and puts back an old folder that they left aside.
-fn clear(parent: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(parent).map_err(|error| at(parent, &error))? {
-        let entry = entry?;
-        if entry.file_type()?.is_dir() && entry.file_name().to_string_lossy().starts_with(PREFIX) {
-            clear_one(parent, &entry.path()).map_err(|error| at(&entry.path(), &error))?;
-        }
-    }
-    Ok(())
-}
-
-fn clear_one(parent: &Path, folder: &Path) -> io::Result<()> {
-    let path = folder.join(LOCK);
-    let Ok(lock) = File::open(&path) else {
-        // One that is about to be locked; its process then makes another. One with files in it stays.
-        fs::remove_dir(folder).ok();
-        return Ok(());
-    };
-    if lock.try_lock().is_err() || !path.exists() {
-        return Ok(());
-    }
-    let name = fs::read_to_string(&path).unwrap_or_default();
-    let old = folder.join(OLD);
-    let is_name = Path::new(&name).components().count() == 1 && Path::new(&name).file_name().is_some();
-    if old.is_dir() && is_name && !parent.join(&name).exists() {
-        fs::rename(&old, parent.join(&name))?;
-    }
-    remove(folder)
-}
-
-/// Removes a scratch folder. What has a manifest is whole, old or new: of that the listed files go, and if there are others all stays.
-fn remove(folder: &Path) -> io::Result<()> {
-    for part in [NEW, OLD].map(|part| folder.join(part)).iter().filter(|part| part.is_dir()) {
+/// Removes the scratch folder `folder`, held by `anchor`. What has a manifest is whole, old or new: of that the listed files go, and if there are others all stays.
+///
+/// # Errors
+/// What the file system refuses.
+pub(super) fn remove(anchor: &Anchor, folder: &Path) -> io::Result<()> {
+    let held = anchor.path();
+    for part in [NEW, OLD].map(|part| held.join(part)).iter().filter(|part| is_folder(part)) {
         match Manifest::read(part)? {
             Some(manifest) => remove_listed(part, &manifest)?,
-            None => fs::remove_dir_all(part)?,
+            None if part.ends_with(NEW) => fs::remove_dir_all(part)?,
+            None => drop(fs::remove_dir(part)),
         }
         if part.exists() {
             return Ok(());
         }
     }
-    if_there(fs::remove_file(folder.join(LOCK)))?;
-    fs::remove_dir(folder)
+    if_there(fs::remove_file(held.join(LOCK)))?;
+    if_there(fs::remove_dir(folder))
 }
 
 /// Nothing to remove is no error.
@@ -207,6 +189,22 @@ fn by_renames(new: &Path, old: &Path, aside: &Path) -> io::Result<()> {
 }
 
 #[cfg(test)]
+impl Scratch {
+    /// Where it is.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Leaves all as it is, as a process that is killed does.
+    pub fn abandon(self) -> PathBuf {
+        let scratch = std::mem::ManuallyDrop::new(self);
+        let Self { _lock: lock, folder, .. } = &*scratch;
+        lock.unlock().unwrap();
+        folder.clone()
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -227,9 +225,7 @@ mod tests {
         fs::rename(at("a"), scratch.folder.join(OLD)).unwrap();
         clear(parent.path()).unwrap();
         assert!(!at("a").exists());
-        let left = scratch.folder.clone();
-        let Scratch { _lock: lock, .. } = &scratch;
-        lock.unlock().unwrap();
+        let left = scratch.abandon();
         clear(parent.path()).unwrap();
         assert_eq!(page(&at("a")), "new");
         assert!(!left.exists());

@@ -173,3 +173,23 @@ fn the_folder_that_the_process_is_in_stays() {
     assert!(error.contains("the folder that you are in"), "{error}");
     assert!(OutputFolder::open(Path::new("/")).is_err());
 }
+
+#[test]
+fn what_is_filled_waits_until_it_is_put_or_is_gone() {
+    let parent = tempfile::tempdir().unwrap();
+    let (a, b) = (parent.path().join("a"), parent.path().join("b"));
+    replace(&a, "old").unwrap();
+    let fill = |path: &Path| OutputFolder::open(path).unwrap().filled(write("new")).unwrap();
+    let page = || fs::read_to_string(a.join("page")).unwrap();
+    drop((fill(&a), fill(&b)));
+    assert_eq!((page().as_str(), names(parent.path())), ("old", vec!["a".to_owned()]));
+    let both = [fill(&a), fill(&b)];
+    assert_eq!(page(), "old");
+    both.into_iter().for_each(|filled| filled.put().unwrap());
+    assert_eq!((page().as_str(), names(parent.path())), ("new", vec!["a".to_owned(), "b".to_owned()]));
+    // What comes in between is seen.
+    let filled = fill(&a);
+    fs::write(a.join("notes.txt"), "mine").unwrap();
+    assert!(filled.put().unwrap_err().to_string().contains("notes.txt"));
+    assert_eq!(names(&a), [MANIFEST, "notes.txt", "page"]);
+}

@@ -13,7 +13,7 @@ mod levels;
 mod rows;
 mod turn;
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -161,11 +161,15 @@ pub(crate) fn reader(input: &mut dyn Input) -> io::Result<ImageReader<&mut dyn I
 
 fn open(path: &Path) -> Result<File, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
-    let file = File::open(path).map_err(in_file)?;
-    if file.metadata().map_err(in_file)?.is_dir() {
+    let about = fs::metadata(path).map_err(in_file)?;
+    if about.is_dir() {
         return Err(in_file(io::Error::other("is a folder, expected an image file")));
     }
-    Ok(file)
+    // To open a pipe again would be to wait for ever.
+    if !about.is_file() {
+        return Err(in_file(io::Error::other("is no regular file; photographs are read more than once: save it as a file first")));
+    }
+    File::open(path).map_err(in_file)
 }
 
 /// What the head of a photograph says of it.

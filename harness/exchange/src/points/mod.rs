@@ -5,13 +5,14 @@ mod names;
 mod parallel;
 mod table;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind, escape};
 use csv::StringRecord;
 use thiserror::Error;
+
+use crate::bounded;
 
 pub use lost::{LostRow, LostRows};
 pub use names::Names;
@@ -91,8 +92,8 @@ pub type Check<'c> = &'c (dyn Fn(&PointRef<'_>) -> Result<(), (&'static str, Str
 /// As [`read_points`]; the first row that `check` refuses, with line and column.
 pub fn read_points_checked(path: &Path, check: Check<'_>) -> Result<PointFile, PointFileError> {
     let name = path.display().to_string();
-    let file = File::open(path).map_err(|e| PointFileError { file: name.clone(), line: None, column: None, problem: e.to_string() })?;
-    not_empty(&name, parse_points_checked(&name, file, check)?)
+    let text = bounded::table(path).map_err(|error| as_a_whole(&name, &error))?;
+    not_empty(&name, parse(&name, &text, check)?)
 }
 
 /// As [`read_points`], from anything that can be read; `file` is its name in errors.
@@ -115,15 +116,21 @@ fn not_empty(file: &str, found: PointFile) -> Result<PointFile, PointFileError> 
 ///
 /// # Errors
 /// As [`parse_points`], but for a file without a row; the first row that `check` refuses, with line and column.
-pub fn parse_points_checked(file: &str, mut input: impl Read, check: Check<'_>) -> Result<PointFile, PointFileError> {
-    let mut text = Vec::new();
-    let whole = |problem: String| PointFileError { file: file.to_owned(), line: None, column: None, problem };
-    input.read_to_end(&mut text).map_err(|error| whole(error.to_string()))?;
-    match parallel::parse(file, &text, check) {
+pub fn parse_points_checked(file: &str, input: impl Read, check: Check<'_>) -> Result<PointFile, PointFileError> {
+    parse(file, &bounded::table_of(input).map_err(|error| as_a_whole(file, &error))?, check)
+}
+
+fn parse(file: &str, text: &[u8], check: Check<'_>) -> Result<PointFile, PointFileError> {
+    match parallel::parse(file, text, check) {
         Some(found) => Ok(found),
         // Whatever is wrong is said with its line.
-        None => in_turn(file, &text, check),
+        None => in_turn(file, text, check),
     }
+}
+
+/// Why a file cannot be read.
+pub(crate) fn as_a_whole(file: &str, error: &std::io::Error) -> PointFileError {
+    PointFileError { file: file.to_owned(), line: None, column: None, problem: error.to_string() }
 }
 
 /// Reads row by row up to the first mistake.
