@@ -18,6 +18,7 @@ use clap::Args;
 use super::context::{Context, finder};
 use super::convert::positive;
 use super::photos::AsRead;
+use super::reading::Origin;
 use super::{inputs, output, reading};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
@@ -50,6 +51,9 @@ pub struct Calibrate {
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
     points: Option<PathBuf>,
+    /// What (0, 0) is in the file of --points [default: centre]
+    #[arg(long, value_enum, value_name = "ORIGIN", requires = "points")]
+    origin: Option<Origin>,
     /// Control points: CSV with target,X,Y,Z, and optionally sX,sY,sZ
     #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
     control: Option<PathBuf>,
@@ -164,7 +168,10 @@ impl Calibrate {
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
         match (&self.points, &self.control, self.board.or(self.chessboard.map(Board::from))) {
             (Some(points), Some(control), _) => {
-                let PointFile { points, lost } = inputs::measured(points)?;
+                let PointFile { mut points, lost } = inputs::measured(points)?;
+                if let Some(Origin::Corner) = self.origin {
+                    points.take_from_corner();
+                }
                 Ok(Input {
                     points,
                     lost,

@@ -1,6 +1,6 @@
 //! Image points, column by column.
 
-use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind};
+use calibench_model::{Affine, CornerPoint, Covariance, PixelPoint, Start, TargetKind};
 
 use super::{Names, PointRow};
 
@@ -61,6 +61,11 @@ impl Points {
         self.kind.push(index, room, start.kind);
         self.affine.push(index, room, start.affine);
         self.covariance.push(index, room, start.covariance);
+    }
+
+    /// Takes positions of which (0, 0) is the outer corner of the first pixel, px, as ours, of which it is its centre.
+    pub fn take_from_corner(&mut self) {
+        self.position.iter_mut().for_each(|at| *at = CornerPoint { x: at.x, y: at.y }.to_pixel());
     }
 
     /// Adds all points of another table.
