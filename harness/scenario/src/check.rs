@@ -315,8 +315,8 @@ impl Adjusted<'_> {
         let recognition = self.recognition.map(|section| recognition::read(section, field, stations, problems));
         let recognition = recognition.map_or(Some(None), |read| read.map(Some))?;
         let views = ViewsSubject { recognition, ..views };
-        let ViewsSubject { camera, field, stations, redraw, .. } = &views;
-        let seen = Seen { camera, field, stations, redrawn: redraw.is_some() };
+        let ViewsSubject { camera, field, stations, redraw, survey_sigma, .. } = &views;
+        let seen = Seen { camera, field, stations, redrawn: redraw.is_some(), survey_sigma: *survey_sigma };
         match (self.calibration, self.blocks, self.listed_blocks) {
             (None, None, listed) if listed.is_empty() => Some(views),
             (Some(section), None, listed) if listed.is_empty() => {

@@ -79,6 +79,8 @@ pub struct Seen<'a> {
     pub stations: &'a [Station],
     /// Whether the stations are others in each trial.
     pub redrawn: bool,
+    /// Standard deviation per axis of the survey of [testfield], object units: one for all trials.
+    pub survey_sigma: Option<f64>,
 }
 
 /// Reads the table of a scenario of `views`; `methods` are those of the scenario.
@@ -94,11 +96,17 @@ pub fn read(mut section: Section<'_>, views: &Seen<'_>, methods: &[Configured], 
         return None;
     };
     if views.redrawn {
-        problems.push(Problem::new(span, "[calibration] with stations that are drawn anew in each trial: expected the same in all"));
+        problems
+            .push(Problem::new(span.clone(), "[calibration] with stations that are drawn anew in each trial: expected the same in all"));
     }
     let sets = sets(&wire.sets, &truth, problems);
     let drawn = wire.drawn.as_ref().map(|drawn| drawn_sigmas(drawn, methods, problems));
     let survey_sigma = wire.survey_sigma.map_or(0.0, |sigma| sigma.0);
+    if let (Some(once), true) = (views.survey_sigma, wire.survey_sigma.is_some()) {
+        let message = format!("`survey_sigma` stands in [calibration] and, with {once}, in [testfield]: expected one survey");
+        let help = "[testfield]'s errors are the same in all trials, [calibration]'s are drawn anew in each";
+        problems.push(Problem::new(span, message).help(help));
+    }
     if problems.len() > before {
         return None;
     }
@@ -108,7 +116,7 @@ pub fn read(mut section: Section<'_>, views: &Seen<'_>, methods: &[Configured], 
         sigma_px: wire.sigma_px.0,
         floor_px: wire.floor_px.map_or(0.0, |floor| floor.0),
         survey_sigma,
-        control_sigma: wire.control_sigma.map_or(survey_sigma, |sigma| sigma.0),
+        control_sigma: wire.control_sigma.map_or(views.survey_sigma.unwrap_or(survey_sigma), |sigma| sigma.0),
         drawn,
         eccentricity: wire.eccentricity.unwrap_or(false),
         keep_points: wire.keep_points.unwrap_or(false),
@@ -212,3 +220,6 @@ pub(crate) fn places(what: &str, names: &[Spanned<String>], known: &[&str], prob
     }
     found
 }
+
+#[cfg(test)]
+mod tests;
