@@ -78,6 +78,9 @@ summary:
 # What every change leaves out because it is large only to be large: before each release
 nightly: build wheel
     {{calibench}} check --strict --locked --nightly
+    {{calibench}} run --all
+    {{calibench}} check --strict --locked --nightly --records records
+    {{calibench}} check --strict --locked --nightly --against records --records records
     CALIBENCH_NIGHTLY=1 cargo test {{everything}} --test calibench determinism
     target/python/bin/python -m pytest -q -p no:cacheprovider harness/python/tests/test_size.py
 

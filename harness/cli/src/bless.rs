@@ -2,12 +2,12 @@
 
 use std::io::{BufRead, IsTerminal, Write};
 
-use calibench_gate::{Baselines, Change, Table};
+use calibench_gate::{Access, Baselines, CEILINGS, Ceilings, Change, Finding, Results, Table};
 use calibench_scenario::Scenario;
 use clap::Args;
 
 use super::context::Context;
-use super::gated::{Keep, Source, cell_verdicts, gated, scenarios};
+use super::gated::{Keep, Source, cell_verdicts, gated, locked, scenarios};
 use super::stored::Reusing;
 use crate::deliver::print;
 use crate::failure::Failure;
@@ -31,19 +31,31 @@ impl Bless {
     }
 
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let baselines = Baselines::open_or_new(&context.root()?.join("reference/baselines"))?;
+        let folder = context.root()?.join("reference/baselines");
+        // What is missing is said before anything is run.
+        let mut ceilings =
+            if Baselines::open_or_new(&folder)?.is_new() { Ceilings::default() } else { Ceilings::read(&folder.join(CEILINGS))? };
         let mut available = |scenario: &Scenario, _: Option<usize>, table: &Table| all_available(&scenario.name, table);
         let stored = self.reusing.open(context)?;
         let mut source = Source { records: None, kept: Some(Keep::new(context)?), each: &mut available, stored: &stored };
         let all = gated(context, &scenarios(context, &self.scenarios)?, &mut source)?;
         let mut verdicts = cell_verdicts(context, &source)?;
         let whole = self.scenarios.is_empty();
+        // From here to the last file this is the only one that blesses.
+        std::fs::create_dir_all(&folder)?;
+        let _lock = locked(&folder, Access::Bless)?;
+        let baselines = Baselines::open_or_new(&folder)?;
+        let gone = baselines.gone(&all, &verdicts, whole)?;
         let mut changed: Vec<Change<'_>> = all.iter().flat_map(|one| baselines.changes(one)).collect();
         changed.extend(baselines.changed_verdicts(&mut verdicts, whole));
         changed.iter().try_for_each(|change| print(&change.news))?;
-        let gone = if whole { baselines.gone(&all) } else { Vec::new() };
         for path in &gone {
             print(&format!("{}: nothing makes these numbers any more, the file will be removed\n", path.display()))?;
+        }
+        let tables: Vec<&Table> = all.iter().filter_map(Results::table).collect();
+        ceilings.list.retain(|ceiling| whole || all.iter().any(|one| one.scenario == ceiling.scenario));
+        for Finding { scenario, method, message, .. } in ceilings.check(&tables) {
+            print(&format!("{method} in {scenario}: {message}; blessing moves no ceiling, and a check fails\n"))?;
         }
         if changed.is_empty() && gone.is_empty() {
             return print("nothing to bless: every baseline is as today\n");

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::OutputFile;
 use calibench_gate::{
-    Baselines, Ceilings, Cells, Check as Gate, FigureSums, Results, Rules, Table, json, junit, not_tested, recorded, render,
+    Access, Baselines, CEILINGS, Ceilings, Cells, Check as Gate, FigureSums, ImageSums, Kept, Results, Rules, Table, json, junit,
+    not_tested, recorded, render,
 };
 use calibench_scenario::Scenario;
 use clap::Args;
 
 use super::context::Context;
-use super::gated::{Keep, Source, cell_verdicts, folder_of, gated, scenarios, unit};
+use super::gated::{Keep, Source, cell_verdicts, folder_of, gated, locked, scenarios, unit};
 use super::output;
 use super::stored::Reusing;
 use crate::deliver::print;
@@ -55,12 +56,15 @@ impl Check {
         }
         let folder = context.root()?.join("reference/baselines");
         // What is missing is said before anything is run.
-        let (baselines, mut ceilings) = (Baselines::open(&folder)?, Ceilings::read(&folder.join("ceilings.toml"))?);
+        let (_, mut ceilings) = (Baselines::open(&folder)?, Ceilings::read(&folder.join(CEILINGS))?);
         let (stored, keep) = (self.reusing.open(context)?, Keep::new(context)?);
         let (wanted, left) = self.wanted(context, &keep)?;
         let mut source = Source { records: self.records.clone(), kept: Some(keep), each: &mut |_, _, _| Ok(()), stored: &stored };
         let all = gated(context, &wanted, &mut source)?;
-        let mut gate = Gate::new();
+        let verdicts = cell_verdicts(context, &source)?;
+        // As they are now: somebody may have blessed while this ran.
+        let _lock = locked(&folder, Access::Compare)?;
+        let (baselines, mut gate) = (Baselines::open(&folder)?, Gate::new());
         for one in &all {
             baselines.compare(one, &mut gate);
         }
@@ -70,7 +74,7 @@ impl Check {
         } else {
             ceilings.list.retain(|ceiling| all.iter().any(|one| one.scenario == ceiling.scenario));
         }
-        baselines.compare_verdicts(&cell_verdicts(context, &source)?, self.scenarios.is_empty(), &mut gate);
+        baselines.compare_verdicts(&verdicts, self.scenarios.is_empty(), &mut gate);
         let tables: Vec<&Table> = all.iter().filter_map(Results::table).collect();
         gate.ceilings(&ceilings, &tables);
         let of = |table: &&Table| table.methods().map(|(label, _)| (table.scenario.clone(), label.to_string())).collect::<Vec<_>>();
@@ -81,12 +85,10 @@ impl Check {
     fn against(&self, context: &Context<'_>, against: &Path, junit: Option<&OutputFile>) -> Result<(), Failure> {
         let (mut gate, mut compared) = (Gate::new(), Vec::new());
         let mut each = |scenario: &Scenario, cell: Option<usize>, table: &Table| {
-            let mut earlier = recorded(&folder_of(against, scenario, cell), &table.scenario, unit(scenario))?;
-            if cell.is_some() {
-                earlier.text.clone_from(&table.text);
-            }
+            let earlier = recorded(&folder_of(against, scenario, cell), &table.scenario, unit(scenario))?;
             gate.compare(&earlier, table, scenario.is_deterministic());
-            gate.compare_cells(&figures(&earlier), &figures(table));
+            gate.compare_cells(&alone::<FigureSums>(&earlier), &alone(table));
+            gate.compare_cells(&alone::<ImageSums>(&earlier), &alone(table));
             compared.extend(table.methods().map(|(label, _)| (table.scenario.clone(), label.to_string())));
             Ok(())
         };
@@ -133,8 +135,8 @@ impl Check {
     }
 }
 
-/// The figures of one run as if it were a scenario without a sweep.
-fn figures(table: &Table) -> Cells<FigureSums> {
+/// What is kept of one run, as if it were of a scenario without a sweep.
+fn alone<T: Kept>(table: &Table) -> Cells<T> {
     let mut cells = Cells::new(&table.scenario, &table.text, table.seed, table.coordinates);
     cells.add("", table);
     cells

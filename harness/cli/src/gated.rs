@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_gate::{Cells, Coordinates, FigureSums, Kept, Measured, PointSums, Results, Table, Verdicts, fingerprint, recorded};
-use calibench_measure::Configured;
+use calibench_gate::{
+    Access, Cells, Coordinates, FigureSums, ImageSums, Kept, Lock, Measured, PointSums, Results, Table, Verdicts, fingerprint, library,
+    recorded,
+};
 use calibench_project::ProjectError;
+use calibench_records::names::cell_run;
 use calibench_report::verdicts;
 use calibench_run::reuse::{self, Reuse, Tally};
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
@@ -74,6 +77,15 @@ pub fn scenarios(context: &Context<'_>, names: &[String]) -> Result<Vec<Scenario
     names.iter().map(|name| context.scenario(name)).collect()
 }
 
+/// The lock on the folder of baselines; whom it waits for is said.
+///
+/// # Errors
+/// A wait that the system ends.
+pub fn locked(folder: &Path, access: Access) -> Result<Lock, Failure> {
+    let waiting = || say!("{}: another `calibench` blesses or compares; waiting for it to end", folder.display());
+    Ok(Lock::take(folder, access, waiting)?)
+}
+
 /// Results of scenarios.
 ///
 /// # Errors
@@ -90,11 +102,12 @@ pub fn gated(context: &Context<'_>, scenarios: &[Scenario], source: &mut Source<
 fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>, tally: &Tally) -> Result<Results, Failure> {
     let reuse = source.stored.reuse(tally);
     let plan = plan(context, scenario, reuse)?;
-    let results = |measured: Measured, figures: Option<Cells<FigureSums>>| Results {
+    let results = |measured: Measured, beside: Option<Beside>| Results {
         scenario: scenario.name.clone(),
         deterministic: scenario.is_deterministic(),
         measured,
-        figures,
+        figures: beside.as_ref().and_then(|beside| kept(&beside.figures)),
+        images: beside.as_ref().and_then(|beside| kept(&beside.images)),
     };
     let missing = plan.missing();
     if let Some(why) = missing.filter(|_| source.records.is_none()) {
@@ -109,8 +122,8 @@ fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>, tall
         None => source.records.clone(),
     };
     if let Some(sweep) = &scenario.sweep {
-        let (sums, figures) = swept(context, scenario, sweep, (records.as_deref(), source), tally)?;
-        return Ok(results(Measured::Sums(sums), figures));
+        let (sums, beside) = swept(context, scenario, sweep, (records.as_deref(), source), tally)?;
+        return Ok(results(Measured::Sums(sums), Some(beside)));
     }
     let table = match &records {
         Some(folder) => described(recorded(&folder.join(&scenario.name), &scenario.name, unit(scenario))?, &plan, keep.is_some()),
@@ -122,9 +135,26 @@ fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>, tall
         }
     };
     (source.each)(scenario, None, &table)?;
-    let mut figures = empty(scenario);
-    figures.add("", &table);
-    Ok(results(Measured::Points(table), kept(figures)))
+    let mut beside = Beside::new(scenario, &table.text, table.seed);
+    beside.add("", &table);
+    Ok(results(Measured::Points(table), Some(beside)))
+}
+
+/// What stands beside points: the figures of adjustments, and the image points behind them.
+struct Beside {
+    figures: Cells<FigureSums>,
+    images: Cells<ImageSums>,
+}
+
+impl Beside {
+    fn new(scenario: &Scenario, text: &str, seed: u64) -> Self {
+        Self { figures: empty(scenario, text, seed), images: empty(scenario, text, seed) }
+    }
+
+    fn add(&mut self, label: &str, table: &Table) {
+        self.figures.add(label, table);
+        self.images.add(label, table);
+    }
 }
 
 /// All cells of a sweep, one after the other.
@@ -134,12 +164,12 @@ fn swept(
     sweep: &Sweep,
     (records, source): (Option<&Path>, &mut Source<'_>),
     tally: &Tally,
-) -> Result<(Cells<PointSums>, Option<Cells<FigureSums>>), Failure> {
-    let (mut sums, mut figures) = (empty(scenario), empty(scenario));
+) -> Result<(Cells<PointSums>, Beside), Failure> {
+    let mut all: Option<(u64, Cells<PointSums>, Beside)> = None;
     let progress = Progress::start(&scenario.name, sweep.cells() as u64, context.quiet);
     for index in 0..sweep.cells() {
         let label = sweep.label(index);
-        let name = format!("{}@{label}", scenario.name);
+        let name = cell_run(&scenario.name, &label);
         let cell = parse_cell(scenario, sweep, index, context.registry()?)
             .map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
         let plan = plan(context, &cell, source.stored.reuse(tally))?;
@@ -150,12 +180,19 @@ fn swept(
             None => run(&plan, &name, &|| ())?,
         };
         (source.each)(scenario, Some(index), &table)?;
+        // The seed of the scenario, unless these records are of a run with another one.
+        let seed = if table.seed == cell.seed { scenario.seed } else { table.seed };
+        let (first, sums, beside) =
+            all.get_or_insert_with(|| (seed, empty(scenario, &table.text, seed), Beside::new(scenario, &table.text, seed)));
+        if seed != *first {
+            return Err(Failure::input(format!("{name}: was run with another seed than the cells before it; run the scenario again")));
+        }
         sums.add(&label, &table);
-        figures.add(&label, &table);
+        beside.add(&label, &table);
         progress.step();
     }
     progress.finish(done(tally));
-    Ok((sums, kept(figures)))
+    all.map(|(_, sums, beside)| (sums, beside)).ok_or_else(|| Failure::input(format!("{}: its sweep has no cell", scenario.name)))
 }
 
 /// What was done.
@@ -168,12 +205,12 @@ fn plan<'a>(context: &'a Context<'_>, scenario: &'a Scenario, reuse: Option<Reus
     Ok(Plan { bounds: false, reuse, ..Plan::new(scenario, context.toolbox.tools(), context.data()?) })
 }
 
-fn empty<T: Kept>(scenario: &Scenario) -> Cells<T> {
-    Cells::new(&scenario.name, &fingerprint(&scenario.text), scenario.seed, Coordinates::of(scenario.has_truth()))
+fn empty<T: Kept>(scenario: &Scenario, text: &str, seed: u64) -> Cells<T> {
+    Cells::new(&scenario.name, text, seed, Coordinates::of(scenario.has_truth()))
 }
 
-fn kept(figures: Cells<FigureSums>) -> Option<Cells<FigureSums>> {
-    (!figures.is_empty()).then_some(figures)
+fn kept<T: Kept + Clone>(cells: &Cells<T>) -> Option<Cells<T>> {
+    (!cells.is_empty()).then(|| cells.clone())
 }
 
 /// Runs `plan` into a table called `name`.
@@ -211,17 +248,11 @@ fn described(mut table: Table, plan: &Plan<'_>, now: bool) -> Table {
         return table;
     }
     table.text = fingerprint(&plan.scenario.text);
-    let detector = plan.detector_used().map(|(name, version)| format!("{name} {version}"));
+    let detector = plan.detector_used();
     for method in plan.methods {
-        table.describe(&method.label, method.all_settings(), library(method, detector.as_deref()));
+        table.describe(&method.label, method.all_settings(), library(&method.label, &method.version, detector.as_ref()));
     }
     table
-}
-
-/// The libraries of this machine on which a method's numbers depend.
-fn library(method: &Configured, detector: Option<&str>) -> String {
-    let own = method.label.starts_with("opencv").then(|| format!("OpenCV {}", method.version));
-    own.into_iter().chain(detector.map(str::to_owned)).collect::<Vec<_>>().join(", ")
 }
 
 /// The folder of the records of a scenario, or of a cell of its sweep, below `records`.

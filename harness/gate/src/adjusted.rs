@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use calibench_model::Rejection;
+use calibench_records::adjustments as recorded;
 use calibench_records::results::{Calibrated, Figure, Group};
 
 use super::point_entry::{Entry, Found, rounded};
@@ -22,6 +23,9 @@ pub struct Numbers {
 /// Which figure of the adjustments of a method: the set of parameters (from 0), the group, the name within it.
 pub type FigureKey = (usize, Group, Arc<str>);
 
+/// The errors of check points that are compared as points are, in the object unit.
+pub(super) const CHECKED: [&str; 2] = ["rmse_xy", "rmse_z"];
+
 /// The view under which they stand.
 pub(super) const VIEW: &str = "adjustment";
 
@@ -34,11 +38,12 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
         return if first { vec![("camera".into(), failed), ("check points".into(), failed)] } else { Vec::new() };
     };
     let measured = |x: f64, y: f64| Entry::Measured(Found::bare([rounded(x), rounded(y)]));
+    let value = |figure: &Figure| recorded::recorded(figure).value;
     let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
     let Some(frame) = find(Group::Frame, "rms") else {
         // Counted with what holds its frame: a free network, and not one of a camera's further sets.
         let sigma0 = find(Group::Network, "sigma0").filter(|_| find(Group::Network, "of them held").is_some());
-        let sigma0 = sigma0.map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(figure.value, 0.0)));
+        let sigma0 = sigma0.map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(value(figure), 0.0)));
         let recognised = recognised(figures).into_iter().map(|(name, [lost, wrong])| (name, measured(lost, wrong)));
         let found: Vec<(Arc<str>, Entry)> = sigma0.into_iter().chain(recognised).collect();
         // Figures without any of a camera are no adjustment of one: what is printed, and what follows from it.
@@ -48,12 +53,12 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
     if !first {
         return Vec::new();
     }
-    let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * figure.value } else { figure.value });
-    let check = match (mm("rmse_xy"), mm("rmse_z")) {
-        (Some(xy), Some(z)) => Some(measured(xy, z)),
+    let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * value(figure) } else { value(figure) });
+    let check = match CHECKED.map(mm) {
+        [Some(xy), Some(z)] => Some(measured(xy, z)),
         _ => adjusted.check_failed.as_ref().map(|_| failed),
     };
-    let camera = ("camera".into(), measured(frame.value, 0.0));
+    let camera = ("camera".into(), measured(value(frame), 0.0));
     [camera].into_iter().chain(check.map(|entry| ("check points".into(), entry))).collect()
 }
 
@@ -76,13 +81,13 @@ fn recognised(figures: &[Figure]) -> Vec<(Arc<str>, [f64; 2])> {
     counts.into_iter().filter_map(shares).collect()
 }
 
-/// Every figure but the residuals of single points, each in its unit.
+/// Every figure but the residuals of single points, each in its unit, with the digits of records: a run and its records are alike.
 pub(super) fn figures(adjusted: &Calibrated) -> Vec<(FigureKey, Numbers)> {
     let figures = adjusted.outcome.iter().flatten().filter(|figure| !matches!(figure.group, Group::Point | Group::Object));
     figures
         .map(|figure| {
-            let numbers = Numbers { value: figure.value, sigma: figure.sigma, error: figure.error };
-            ((adjusted.set, figure.group, figure.name.clone()), numbers)
+            let recorded::Numbers { value, sigma, error } = recorded::recorded(figure);
+            ((adjusted.set, figure.group, figure.name.clone()), Numbers { value, sigma, error })
         })
         .collect()
 }

@@ -26,6 +26,11 @@ pub fn figures_path(folder: &Path, scenario: &str) -> PathBuf {
     folder.join(format!("{}.figures.csv", scenario.replace('/', "--")))
 }
 
+/// Where the image points behind the adjustments of a scenario are: beside its baseline, as `<scenario>.images.csv`.
+pub fn images_path(folder: &Path, scenario: &str) -> PathBuf {
+    folder.join(format!("{}.images.csv", scenario.replace('/', "--")))
+}
+
 /// The heads of the methods that a file keeps: those that were available.
 pub(super) fn head_method(label: &Arc<str>, method: &MethodTable, rows: usize) -> HeadMethod {
     HeadMethod {

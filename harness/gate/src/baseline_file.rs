@@ -3,7 +3,7 @@
 //! The head is TOML behind `# `. The checksum is the first 16 bytes of the BLAKE3 hash of every line but its own, in hexadecimal.
 
 use std::fs;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::atomic::write_atomically;
@@ -59,6 +59,8 @@ pub enum Kind {
     Sums,
     /// One row a figure of adjustments, method and cell: sums over trials.
     Figures,
+    /// As [`Self::Sums`], of the image points behind adjustments.
+    Images,
     /// One row a published cell: its verdict.
     Verdicts,
 }
@@ -159,6 +161,13 @@ pub fn write(path: &Path, head: &Head, columns: &[&str], rows: impl Iterator<Ite
     })
     .map_err(failed)?;
     Ok(sum)
+}
+
+/// Whether a file is one that [`write`] wrote, as a whole or in part.
+pub fn is_baseline(path: &Path) -> bool {
+    let mut start = vec![0; FIRST.len()];
+    let mut read = || fs::File::open(path)?.read_exact(&mut start);
+    path.extension().is_some_and(|extension| extension == "csv") && path.is_file() && read().is_ok() && start == FIRST.as_bytes()
 }
 
 fn checksum<'a>(lines: impl Iterator<Item = &'a str>) -> String {

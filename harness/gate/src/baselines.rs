@@ -4,13 +4,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::Check;
-use super::baseline::{baseline_path, figures_path, read_baseline};
-use super::baseline_file::BaselineError;
-use super::cells::Cells;
+use super::baseline::{baseline_path, figures_path, images_path, read_baseline};
+use super::baseline_file::{BaselineError, is_baseline};
+use super::cells::{Cells, Kept};
 use super::figures::FigureSums;
 use super::finding::{Finding, Verdict};
 use super::index::{INDEX, Index, IndexError};
 use super::moments::PointSums;
+use super::sums::ImageSums;
 use super::table::Table;
 use super::verdicts::Verdicts;
 
@@ -24,6 +25,8 @@ pub struct Results {
     pub measured: Measured,
     /// The figures of its adjustments, if it makes any.
     pub figures: Option<Cells<FigureSums>>,
+    /// The image points behind these, as far as the run keeps them.
+    pub images: Option<Cells<ImageSums>>,
 }
 
 /// What a scenario measured.
@@ -45,15 +48,15 @@ impl Results {
         }
     }
 
-    /// The files that keep it: of its points and of its figures.
-    pub(super) fn paths(&self, folder: &Path) -> [PathBuf; 2] {
+    /// The files that keep it: of its points, of its figures, of the image points behind these.
+    pub(super) fn paths(&self, folder: &Path) -> [PathBuf; 3] {
         paths(folder, &self.scenario)
     }
 }
 
-/// The files that keep the baseline of `scenario`: of its points and of its figures.
-fn paths(folder: &Path, scenario: &str) -> [PathBuf; 2] {
-    [baseline_path(folder, scenario), figures_path(folder, scenario)]
+/// The files that keep the baseline of `scenario`: of its points, of its figures, of the image points behind these.
+fn paths(folder: &Path, scenario: &str) -> [PathBuf; 3] {
+    [baseline_path(folder, scenario), figures_path(folder, scenario), images_path(folder, scenario)]
 }
 
 /// The folder of what was blessed, with its list.
@@ -74,7 +77,7 @@ impl Baselines {
 
     /// Compares one scenario with its baseline; a baseline that is not what was blessed is a finding.
     pub fn compare(&self, now: &Results, check: &mut Check) {
-        let (name, [points, figures]) = (now.scenario.as_str(), now.paths(&self.folder));
+        let (name, [points, figures, images]) = (now.scenario.as_str(), now.paths(&self.folder));
         let found = |verdict, metric, message: String| Finding::new(verdict, name, "all methods", metric, message);
         match &now.measured {
             Measured::Points(table) => {
@@ -93,13 +96,17 @@ impl Baselines {
             }
             Measured::NotCompared(why) => return check.note(found(Verdict::Informs, "untested", format!("not compared: {why}"))),
         }
-        let blessed = self.blessed(check, name, &figures, Cells::<FigureSums>::read(&figures, name));
-        match (blessed, &now.figures) {
+        self.compare_kept(name, &figures, now.figures.as_ref(), ("figures", "figures of adjustments"), check);
+        self.compare_kept(name, &images, now.images.as_ref(), ("images", "image points of adjustments"), check);
+    }
+
+    /// Compares what only some scenarios have, `what` as a metric and in words, with the file at `path`.
+    fn compare_kept<T: Kept>(&self, name: &str, path: &Path, now: Option<&Cells<T>>, what: (&'static str, &str), check: &mut Check) {
+        let found = |verdict, message: String| Finding::new(verdict, name, "all methods", what.0, message);
+        match (self.blessed(check, name, path, Cells::<T>::read(path, name)), now) {
             (Some(baseline), Some(now)) => check.compare_cells(&baseline, now),
-            (Some(_), None) => check.note(found(Verdict::Fails, "figures", "there are no figures of adjustments any more".into())),
-            (None, Some(_)) if !self.index.lists(&figures) => {
-                check.note(found(Verdict::Unblessed, "figures", "figures of adjustments: not blessed yet".into()));
-            }
+            (Some(_), None) => check.note(found(Verdict::Fails, format!("there are no {} any more", what.1))),
+            (None, Some(_)) if !self.index.lists(path) => check.note(found(Verdict::Unblessed, format!("{}: not blessed yet", what.1))),
             (None, _) => {}
         }
     }
@@ -127,11 +134,7 @@ impl Baselines {
     pub fn vanished(&self, all: &[Results], left: &[String], check: &mut Check) -> io::Result<()> {
         let mut known: Vec<PathBuf> = all.iter().flat_map(|one| one.paths(&self.folder)).chain([Verdicts::path(&self.folder)]).collect();
         known.extend(left.iter().flat_map(|name| paths(&self.folder, name)));
-        let mut files: Vec<PathBuf> = std::fs::read_dir(&self.folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
-        files.extend(self.index.files.keys().map(|file| self.folder.join(file)));
-        files.sort();
-        files.dedup();
-        for path in files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "csv") && !known.contains(path)) {
+        for path in self.files()?.into_iter().filter(|path| !known.contains(path)) {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().replace("--", "/");
             let message = if self.index.lists(&path) {
                 "the scenario is gone, its baseline is blessed: restore it, or `calibench bless`".to_owned()
@@ -141,6 +144,22 @@ impl Baselines {
             check.note(Finding::new(Verdict::Fails, &name, "all methods", "scenario", message));
         }
         Ok(())
+    }
+
+    /// Every baseline that is listed, or that lies in the folder; what else somebody keeps there is theirs.
+    ///
+    /// # Errors
+    /// A folder that cannot be read.
+    pub(super) fn files(&self) -> io::Result<Vec<PathBuf>> {
+        let there = match std::fs::read_dir(&self.folder) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
+            entries => entries?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?,
+        };
+        let mut files: Vec<PathBuf> = there.into_iter().filter(|path| is_baseline(path)).collect();
+        files.extend(self.index.files.keys().map(|file| self.folder.join(file)));
+        files.sort();
+        files.dedup();
+        Ok(files)
     }
 
     /// The content of a file if it is there; what is wrong with it is noted.

@@ -3,12 +3,15 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibench_exchange::atomic::write_atomically;
+
 use super::accepted_worse::worse_than;
 use super::baseline::{read_baseline, write_baseline};
 use super::baseline_file::BaselineError;
 use super::baselines::{Baselines, Measured, Results};
+use super::ceilings::CEILINGS;
 use super::cells::{Cells, Kept};
-use super::index::{Index, IndexError};
+use super::index::{INDEX, Index, IndexError};
 use super::table::Table;
 use super::verdicts::Verdicts;
 
@@ -36,10 +39,15 @@ impl Baselines {
         }
     }
 
+    /// Whether nothing was ever blessed here.
+    pub fn is_new(&self) -> bool {
+        !self.folder.join(INDEX).exists()
+    }
+
     /// The files of a scenario that are not as they are blessed. A baseline that is damaged, or of an older version, is replaced as if there were
     /// none.
     pub fn changes<'a>(&self, now: &'a Results) -> Vec<Change<'a>> {
-        let (name, [points, figures]) = (now.scenario.as_str(), now.paths(&self.folder));
+        let (name, [points, figures, images]) = (now.scenario.as_str(), now.paths(&self.folder));
         let mut changes = match &now.measured {
             Measured::NotCompared(_) => return Vec::new(),
             Measured::Points(table) => {
@@ -51,6 +59,7 @@ impl Baselines {
             Measured::Sums(sums) => Vec::from_iter(self.cells(name, points, sums)),
         };
         changes.extend(now.figures.as_ref().and_then(|now| self.cells(name, figures, now)));
+        changes.extend(now.images.as_ref().and_then(|now| self.cells(name, images, now)));
         changes
     }
 
@@ -76,7 +85,8 @@ impl Baselines {
         for (cell, word) in old.iter().filter(|_| !whole).flat_map(|old| &old.0) {
             now.0.entry(cell.clone()).or_insert_with(|| word.clone());
         }
-        if old.as_ref().map_or(now.0.is_empty(), |old| old == now) {
+        // Where none is left the file goes.
+        if now.0.is_empty() || old.as_ref() == Some(&*now) {
             return None;
         }
         let mut news = format!("published tables: verdicts of {} cells\n", now.0.len());
@@ -86,17 +96,27 @@ impl Baselines {
         Some(Change { path, news, write: Box::new(|path| now.write(path)) })
     }
 
-    /// The blessed files that none of `all` scenarios makes any more.
-    pub fn gone(&self, all: &[Results]) -> Vec<PathBuf> {
-        let mut made: Vec<PathBuf> = vec![Verdicts::path(&self.folder)];
-        for one in all {
-            let [points, figures] = one.paths(&self.folder);
-            made.push(points);
-            if one.figures.is_some() || matches!(one.measured, Measured::NotCompared(_)) {
-                made.push(figures);
-            }
+    /// The files that `all` scenarios, or the published tables, do not make any more. Of some scenarios alone, not `whole`, their own files; else every
+    /// other baseline that is listed or lies in the folder.
+    ///
+    /// # Errors
+    /// A folder that cannot be read.
+    pub fn gone(&self, all: &[Results], verdicts: &Verdicts, whole: bool) -> io::Result<Vec<PathBuf>> {
+        let (mut made, mut own) = (Vec::new(), Vec::new());
+        if !verdicts.0.is_empty() {
+            made.push(Verdicts::path(&self.folder));
         }
-        self.index.files.keys().map(|file| self.folder.join(file)).filter(|path| !made.contains(path)).collect()
+        for one in all {
+            let [points, figures, images] = one.paths(&self.folder);
+            let unknown = matches!(one.measured, Measured::NotCompared(_));
+            own.extend([points.clone(), figures.clone(), images.clone()]);
+            made.push(points);
+            made.extend(Some(figures).filter(|_| one.figures.is_some() || unknown));
+            made.extend(Some(images).filter(|_| one.images.is_some() || unknown));
+        }
+        let mut gone = self.files()?;
+        gone.retain(|path| !made.contains(path) && (whole || own.contains(path)));
+        Ok(gone)
     }
 
     /// Writes the changes and removes what is `gone`; `written` hears of every file. The list comes last.
@@ -105,6 +125,11 @@ impl Baselines {
     /// What the file system refuses.
     pub fn bless(mut self, changes: &[Change<'_>], gone: &[PathBuf], written: &mut dyn FnMut(&Path)) -> Result<(), BlessError> {
         std::fs::create_dir_all(&self.folder)?;
+        let ceilings = self.folder.join(CEILINGS);
+        // A check asks for the file, which is written by hand: who begins has none yet.
+        if self.is_new() && !ceilings.exists() {
+            write_atomically(&ceilings, |_| Ok::<(), io::Error>(()))?;
+        }
         for Change { path, write, .. } in changes {
             self.index.bless(path, write(path)?);
             written(path);

@@ -69,6 +69,9 @@ pub enum CeilingError {
     Problems(#[from] Problems),
 }
 
+/// The file's name in the folder of baselines.
+pub const CEILINGS: &str = "ceilings.toml";
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Wire {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::baseline_file::{self, BaselineError, Head, HeadMethod, Kind, Row};
 use super::finding::{Finding, Verdict};
 use super::point_entry::Coordinates;
-use super::table::{MethodTable, Table};
+use super::table::{MethodTable, Table, is_foreign};
 
 /// What a file can keep of a method in a cell.
 pub trait Kept: Default + Sized {
@@ -164,7 +164,7 @@ impl<T: Kept> Cells<T> {
                     findings.push(missing(&name, method, "the method is missing"));
                     continue;
                 };
-                let foreign = self.methods[method].library != now.methods[method].library;
+                let foreign = is_foreign(&self.methods[method].library, &now.methods[method].library);
                 let finding = |verdict: Verdict, metric: &'static str, message: String| {
                     let verdict = if foreign && verdict == Verdict::Changed { Verdict::Informs } else { verdict };
                     Finding::new(verdict, &name, method, metric, message)
@@ -203,7 +203,7 @@ impl<T: Kept> Cells<T> {
         }
         for (label, old) in &self.methods {
             let Some(new) = now.methods.get(label) else { continue };
-            let verdict = if old.library == new.library { Verdict::Changed } else { Verdict::Informs };
+            let verdict = if is_foreign(&old.library, &new.library) { Verdict::Informs } else { Verdict::Changed };
             if old.version != new.version {
                 let message = format!("the version changed from {} to {}: look, then bless", old.version, new.version);
                 findings.push(Finding::new(verdict, &self.scenario, label, "version", message));

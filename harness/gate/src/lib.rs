@@ -22,6 +22,7 @@ mod index;
 mod judge;
 mod junit;
 mod limits;
+mod lock;
 mod missing;
 mod moments;
 mod pairs;
@@ -45,11 +46,11 @@ mod tests;
 
 pub use accepted_worse::worse_than;
 pub use adjusted::{FigureKey, Numbers};
-pub use baseline::{baseline_path, figures_path, read_baseline, write_baseline};
+pub use baseline::{baseline_path, figures_path, images_path, read_baseline, write_baseline};
 pub use baseline_file::{BaselineError, Kind, machine};
 pub use baselines::{Baselines, Measured, Results};
 pub use blessing::{BlessError, Change};
-pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
+pub use ceilings::{CEILINGS, Ceiling, CeilingError, CeilingMetric, Ceilings};
 pub use cells::{Cells, Kept};
 pub use compare::OTHER_VERSION;
 pub use few::FEW_GROWTH;
@@ -58,12 +59,14 @@ pub use finding::{Finding, Rules, Verdict};
 pub use index::{INDEX, Index, IndexError};
 pub use junit::junit;
 pub use limits::{ALPHA, BOUND, LEAST_PAIRS, TOLERANCE};
+pub use lock::{Access, Lock};
 pub use moments::PointSums;
 pub use point_entry::{Coordinates, DECIMALS, Entry, Found, Place};
 pub use recorded::recorded;
 pub use render::{Tally, json, not_tested, render};
+pub use sums::ImageSums;
 pub use sums_judged::{CELL_GROWTH, FAILURES, SIGMA_DRIFT, TARGET_GROWTH};
-pub use table::{MethodTable, Table, fingerprint};
+pub use table::{MethodTable, Table, fingerprint, library};
 pub use verdicts::Verdicts;
 
 use calibench_records::statistics::holm;
@@ -107,6 +110,7 @@ impl Check {
         let [methods, count] = baseline.counts();
         match T::KIND {
             Kind::Figures => self.tally.figures += count,
+            Kind::Images => self.tally.points += count,
             Kind::Points | Kind::Sums | Kind::Verdicts => {
                 self.tally.scenarios += baseline.len();
                 self.tally.methods += methods;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::finding::{Finding, Verdict};
 use super::point_entry::Place;
-use super::table::{MethodTable, Table};
+use super::table::{MethodTable, Table, is_foreign};
 
 /// What the baseline has and the current table lacks fails; what is new is not blessed; another version or other parameters are a change.
 pub(super) fn completeness(baseline: &Table, current: &Table) -> Vec<Finding> {
@@ -17,9 +17,9 @@ pub(super) fn completeness(baseline: &Table, current: &Table) -> Vec<Finding> {
             Some(MethodTable { unavailable: Some(why), .. }) => {
                 findings.push(gone(name, label, base, format!("the method is unavailable: {why}")));
             }
-            // What has figures alone is compared by them.
-            Some(now) if now.points.is_empty() && base.points.is_empty() && !now.figures.is_empty() => {}
-            Some(now) if now.points.is_empty() => findings.push(gone(name, label, base, "the method has no points".into())),
+            Some(now) if now.points.is_empty() && !base.points.is_empty() => {
+                findings.push(gone(name, label, base, "the method has no points".into()))
+            }
             Some(now) => {
                 findings.extend(missing_points(name, label, base, now));
                 findings.extend(news(name, label, base, now));
@@ -76,7 +76,7 @@ fn news(scenario: &str, label: &str, base: &MethodTable, now: &MethodTable) -> V
     if base.version != now.version {
         let message = format!("the version changed from {} to {}: look, then bless", base.version, now.version);
         // A library's version is the machine's.
-        let verdict = if now.library == base.library { Verdict::Changed } else { Verdict::Informs };
+        let verdict = if is_foreign(&base.library, &now.library) { Verdict::Informs } else { Verdict::Changed };
         findings.push(Finding::new(verdict, scenario, label, "version", message));
     }
     if !base.settings.is_empty() && !now.settings.is_empty() && base.settings != now.settings {

@@ -8,8 +8,9 @@ use calibench_records::names::SCENARIO;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
 use calibench_records::stored::{StoredError, Table as Stored, read_adjustments, read_points};
 
+use super::adjusted::CHECKED;
 use super::point_entry::Coordinates;
-use super::table::{Table, fingerprint};
+use super::table::{Table, fingerprint, library};
 
 /// The records of a scenario, or of a cell of its sweep, in `folder` as a table called `name`. `unit` is the object unit, in which the errors of
 /// check points are.
@@ -19,27 +20,44 @@ use super::table::{Table, fingerprint};
 pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, StoredError> {
     let mut table: Option<Table> = None;
     let start = |trial: &Trial, methods: &[MethodInfo]| Table::new(name, 0, Coordinates::of(has_truth(trial)), methods);
-    let adjusted = if Stored::Adjustments.is_in(folder)? { Some(adjustments_of(folder, unit)?) } else { None };
-    // Of adjustments the points are those of the first trial alone.
-    let has_points = adjusted.as_ref().is_none_or(|trials| trials.values().flatten().all(|(_, one)| one.is_count()));
-    let head = read_points(folder, |trial, methods| {
+    let adjusted = if Stored::Adjustments.is_in(folder)? { Some(adjustments_of(folder, name, unit)?) } else { None };
+    let are_adjusted = adjusted.as_ref().is_some_and(|(_, trials)| !trials.values().flatten().all(|(_, one)| one.is_count()));
+    let head = read_points(folder, name, |trial, methods| {
         let table = table.get_or_insert_with(|| start(&trial, methods));
         table.name_methods(methods);
-        if has_points {
-            table.add(&trial);
-        }
+        table.add_points(&trial, are_adjusted);
     })?;
     let mut table = table.unwrap_or_else(|| start(&Trial::default(), &head.methods));
     table.name_methods(&head.methods);
     table.seed = head.run.seed;
-    if let Ok(text) = std::fs::read_to_string(folder.join(SCENARIO)) {
+    for MethodInfo { label, version, .. } in &head.methods {
+        table.describe(label, String::new(), library(label, version, head.run.detector.as_ref()));
+    }
+    // The cells of a sweep lie below its text.
+    let texts = [Some(folder), folder.parent()].into_iter().flatten().map(|folder| folder.join(SCENARIO));
+    if let Some(text) = texts.into_iter().find_map(|path| std::fs::read_to_string(path).ok()) {
         table.text = fingerprint(&text);
     }
-    for (number, trial) in adjusted.into_iter().flatten() {
-        let of = |(label, one)| Some(Calibrated { method: head.methods.iter().position(|info| info.label == label)?, ..one });
-        table.add(&Trial { number, calibrations: trial.into_iter().filter_map(of).collect(), ..Trial::default() });
+    let Some((seed, trials)) = adjusted else { return Ok(table) };
+    if seed.is_some_and(|seed| seed != head.run.seed) && !head.run.scenario.is_empty() {
+        return Err(mistaken(folder, format!("was run with another seed than {} beside it", Stored::Points.file())));
+    }
+    for (number, trial) in trials {
+        let of = |(label, one): (Arc<str>, Calibrated)| {
+            let method = head.methods.iter().position(|info| info.label == label);
+            let method =
+                method.ok_or_else(|| mistaken(folder, format!("has a method `{label}` that {} has not", Stored::Points.file())))?;
+            Ok(Calibrated { method, ..one })
+        };
+        let calibrations = trial.into_iter().map(of).collect::<Result<_, StoredError>>()?;
+        table.add(&Trial { number, calibrations, ..Trial::default() });
     }
     Ok(table)
+}
+
+/// Adjustments that do not fit their points.
+fn mistaken(folder: &Path, problem: String) -> StoredError {
+    StoredError::Mistaken { path: folder.join(Stored::Adjustments.file()), problem }
 }
 
 /// Whether any point has an error; records without a point count as of a known truth.
@@ -54,11 +72,15 @@ fn has_truth(trial: &Trial) -> bool {
 /// Adjustments by trial, each with the label of its method.
 type ByTrial = BTreeMap<u64, Vec<(Arc<str>, Calibrated)>>;
 
-/// The adjustments of the run in `folder` by trial, each with the label of its method, as a run hands them on: by method and set.
-fn adjustments_of(folder: &Path, unit: &'static str) -> Result<ByTrial, StoredError> {
+/// The adjustments of the run in `folder` by trial, each with the label of its method, as a run hands them on: by method and set; and their seed, if there are any.
+fn adjustments_of(folder: &Path, name: &str, unit: &'static str) -> Result<(Option<u64>, ByTrial), StoredError> {
+    let mut other = None;
     let mut sets: BTreeMap<Arc<str>, usize> = BTreeMap::new();
     let mut all: BTreeMap<u64, BTreeMap<(Arc<str>, usize), Calibrated>> = BTreeMap::new();
-    read_adjustments(folder, |row| {
+    let run = read_adjustments(folder, name, |row| {
+        if row.group == Group::Check && CHECKED.contains(&&*row.name) && *row.unit != *unit {
+            other.get_or_insert_with(|| format!("has `{}` in `{}`, expected the scenario's `{unit}`", row.name, row.unit));
+        }
         let next = sets.len();
         let set = *sets.entry(row.set).or_insert(next);
         let none = Calibrated { method: 0, set, outcome: Ok(Vec::new()), check_failed: None };
@@ -76,7 +98,8 @@ fn adjustments_of(folder: &Path, unit: &'static str) -> Result<ByTrial, StoredEr
     let trial = |(number, all): (u64, BTreeMap<(Arc<str>, usize), Calibrated>)| {
         (number, all.into_iter().map(|((label, _), one)| (label, one)).collect())
     };
-    Ok(all.into_iter().map(trial).collect())
+    other.map_or(Ok(()), |problem| Err(mistaken(folder, problem)))?;
+    Ok(((!run.scenario.is_empty()).then_some(run.seed), all.into_iter().map(trial).collect()))
 }
 
 #[cfg(test)]
@@ -114,5 +137,51 @@ mod tests {
         assert_eq!((&*b.version, b.points.len()), ("3", 4), "the camera and the check points of two trials");
         let rms = &b.figures[&(0, Group::Frame, "rms".into())];
         assert!(rms.len() == 2 && rms.values().all(|numbers| numbers.value == 2.0));
+    }
+
+    /// Writes a run with one trial of image points, and their adjustments.
+    fn put(folder: &Path, points: [&RunInfo; 2], adjusted: &str, unit: &'static str) {
+        let table = |table: Stored| Compressor::new(std::fs::File::create(folder.join(table.file())).unwrap());
+        let info = |label: &str, version: &str| MethodInfo { label: label.into(), version: version.into(), unavailable: None };
+        let mut records =
+            RecordWriter::new(table(Stored::Points), points[0].clone(), vec![info("opencv_subpix", "4.10"), info("b", "1")]).unwrap();
+        let point = |method, target: &str, dx| {
+            let position = calibench_model::PixelPoint::new(10.0 + dx, 20.0);
+            calibench_records::results::PointResult::new("v", target, method, Outcome::Measured { position, error: Some((dx, 0.0)) })
+        };
+        records.trial(&Trial { points: vec![point(0, "t", 0.25), point(1, "t", 0.5)], ..Trial::default() }).unwrap();
+        records.finish().unwrap().finish().unwrap();
+        let methods = vec![info("opencv_subpix", "4.10"), info(adjusted, "1")];
+        let mut adjustments = CalibrationWriter::new(table(Stored::Adjustments), points[1].clone(), methods, vec!["held".into()]).unwrap();
+        let figures =
+            [(Group::Frame, "rms", "px"), (Group::Check, "rmse_xy", unit)].map(|(group, name, unit)| Figure::plain(group, name, 2.0, unit));
+        let one = |method| Calibrated { method, set: 0, outcome: Ok(figures.to_vec()), check_failed: None };
+        adjustments.trial(0, &[one(0), one(1)]).unwrap();
+        adjustments.finish().unwrap().finish().unwrap();
+    }
+
+    #[test]
+    fn tables_that_do_not_belong_together_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = |scenario: &str, seed| RunInfo { scenario: scenario.into(), seed, revision: "r".into(), detector: None };
+        let own = run("f/s", 9);
+        let read = |name: &str| recorded(folder.path(), name, "m").map_err(|error| error.to_string());
+        put(folder.path(), [&own; 2], "b", "m");
+        let table = read("f/s").unwrap();
+        let [opencv, b] = ["opencv_subpix", "b"].map(|label| table.method(label).unwrap());
+        assert_eq!((opencv.images.len(), b.images.len(), opencv.points.len()), (1, 1, 1), "its image point, and its camera");
+        assert_eq!((&*opencv.library, &*b.library), ("OpenCV 4.10", ""));
+        assert!(read("f/z").unwrap_err().contains("holds records of `f/s`, expected those of `f/z`"));
+        for (points, adjusted, method, unit, expected) in [
+            (&own, &run("f/z", 9), "b", "m", "calibrations.csv.gz: holds records of `f/z`"),
+            (&run("f/z", 9), &own, "b", "m", "records.csv.gz: holds records of `f/z`"),
+            (&own, &run("f/s", 8), "b", "m", "was run with another seed"),
+            (&own, &own, "c", "m", "has a method `c` that records.csv.gz has not"),
+            (&own, &own, "b", "mm", "has `rmse_xy` in `mm`, expected the scenario's `m`"),
+        ] {
+            put(folder.path(), [points, adjusted], method, unit);
+            let error = read("f/s").unwrap_err();
+            assert!(error.contains(expected), "{expected}: {error}");
+        }
     }
 }

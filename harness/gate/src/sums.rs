@@ -7,9 +7,20 @@ use super::baseline_file::{BaselineError, Kind, Row};
 use super::cells::Kept;
 use super::finding::{Finding, Verdict};
 use super::moments::{PointSums, Sum, digest};
-use super::point_entry::Entry;
+use super::point_entry::{Entry, Place};
 use super::sums_judged::judged;
 use super::table::MethodTable;
+
+impl PointSums {
+    fn of_points(points: &BTreeMap<Place, Entry>) -> Self {
+        let mut by_target: BTreeMap<Arc<str>, Vec<&Entry>> = BTreeMap::new();
+        for (place, entry) in points {
+            by_target.entry(place.target.clone()).or_default().push(entry);
+        }
+        let targets = by_target.into_iter().map(|(target, entries)| (target, Sum::of(&entries))).collect();
+        Self { digest: digest(points), targets }
+    }
+}
 
 impl Kept for PointSums {
     const KIND: Kind = Kind::Sums;
@@ -17,12 +28,7 @@ impl Kept for PointSums {
         &["target", "digest", "measured", "lost", "rejected", "mean_x", "mean_y", "cov_xx", "cov_xy", "cov_yy", "sigma", "nan"];
 
     fn of(method: &MethodTable) -> Self {
-        let mut by_target: BTreeMap<Arc<str>, Vec<&Entry>> = BTreeMap::new();
-        for (place, entry) in &method.points {
-            by_target.entry(place.target.clone()).or_default().push(entry);
-        }
-        let targets = by_target.into_iter().map(|(target, entries)| (target, Sum::of(&entries))).collect();
-        Self { digest: digest(&method.points), targets }
+        Self::of_points(&method.points)
     }
 
     fn rows(&self) -> Vec<Vec<String>> {
@@ -64,5 +70,35 @@ impl Kept for PointSums {
 
     fn count(&self) -> usize {
         self.targets.values().map(|sum| sum.points() as usize).sum()
+    }
+}
+
+/// The image points behind the adjustments of a method in a cell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImageSums(PointSums);
+
+impl Kept for ImageSums {
+    const KIND: Kind = Kind::Images;
+    const COLUMNS: &'static [&'static str] = PointSums::COLUMNS;
+
+    fn of(method: &MethodTable) -> Self {
+        Self(PointSums::of_points(&method.images))
+    }
+
+    fn rows(&self) -> Vec<Vec<String>> {
+        // Of a method without such points, as one that is adjusted alone, there is nothing to keep.
+        if self.count() == 0 { Vec::new() } else { self.0.rows() }
+    }
+
+    fn add(&mut self, row: &Row<'_>) -> Result<(), BaselineError> {
+        self.0.add(row)
+    }
+
+    fn compare(&self, now: &Self, finding: &dyn Fn(Verdict, &'static str, String) -> Finding) -> Vec<Finding> {
+        self.0.compare(&now.0, finding)
+    }
+
+    fn count(&self) -> usize {
+        self.0.count()
     }
 }

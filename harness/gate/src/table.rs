@@ -19,10 +19,24 @@ pub struct MethodTable {
     pub library: String,
     /// Why it measured nothing, if so.
     pub unavailable: Option<String>,
-    /// Every point, in order.
+    /// Every point, in order; of a method whose points are adjusted, what came of its adjustments.
     pub points: BTreeMap<Place, Entry>,
+    /// The image points behind its adjustments, as far as a run keeps them: those of the first trial, or of all.
+    pub images: BTreeMap<Place, Entry>,
     /// Every figure of its adjustments, by trial; residuals of single points are left out.
     pub figures: BTreeMap<FigureKey, BTreeMap<u64, Numbers>>,
+}
+
+/// The libraries on which the numbers of the method `label` depend, with their versions: OpenCV on that of its methods, and the detector, with its name and
+/// version, that gave the approximate positions.
+pub fn library(label: &str, version: &str, detector: Option<&(String, String)>) -> String {
+    let own = label.starts_with("opencv").then(|| format!("OpenCV {version}"));
+    own.into_iter().chain(detector.map(|(name, version)| format!("{name} {version}"))).collect::<Vec<_>>().join(", ")
+}
+
+/// Whether the numbers depend on another library, or version of it, than `blessed`; where one of them is not known they do not.
+pub(super) fn is_foreign(blessed: &str, now: &str) -> bool {
+    !blessed.is_empty() && !now.is_empty() && blessed != now
 }
 
 /// The points of one run of one scenario. Filled trial by trial; trials may come in any order.
@@ -80,14 +94,17 @@ impl Table {
     /// When a point names a method that is not in the list given to [`Table::new`]: another run's trial.
     pub fn add(&mut self, trial: &Trial) {
         self.add_adjusted(trial);
-        // Of adjustments the points are those of the first trial alone.
-        if !trial.calibrations.iter().all(Calibrated::is_count) {
-            return;
-        }
+        let are_adjusted = !trial.calibrations.iter().all(Calibrated::is_count);
+        self.add_points(trial, are_adjusted);
+    }
+
+    /// Adds the points of a trial, as those behind adjustments if they `are_adjusted`.
+    pub(super) fn add_points(&mut self, trial: &Trial, are_adjusted: bool) {
         for point in &trial.points {
             let place = Place { trial: trial.number, view: point.view.clone(), target: point.target.clone() };
             let entry = Entry::of(point, self.coordinates);
-            self.of_index(point.method).points.insert(place, entry);
+            let method = self.of_index(point.method);
+            if are_adjusted { &mut method.images } else { &mut method.points }.insert(place, entry);
         }
     }
 
@@ -147,8 +164,8 @@ impl Table {
 impl MethodTable {
     /// A method without a point.
     pub fn new(version: Arc<str>) -> Self {
-        let (settings, points, figures) = (String::new(), BTreeMap::new(), BTreeMap::new());
-        Self { version, settings, library: String::new(), unavailable: None, points, figures }
+        let (points, images, figures) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { version, settings: String::new(), library: String::new(), unavailable: None, points, images, figures }
     }
 
     /// How many points are measured, lost and rejected.

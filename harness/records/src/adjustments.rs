@@ -1,5 +1,6 @@
 //! The adjustments of a run as one tidy CSV beside its records.
 
+use std::collections::HashMap;
 use std::io::{Read, Write};
 use std::sync::Arc;
 
@@ -7,6 +8,7 @@ use csv::StringRecord;
 
 use crate::cells::{Cells, RecordError, open, write_row};
 use crate::interned::Names;
+use crate::once::{Once, Shared};
 use crate::points::RunInfo;
 use crate::results::MethodInfo;
 use crate::results::{Calibrated, Figure, Group};
@@ -61,9 +63,8 @@ impl<W: Write> CalibrationWriter<W> {
     }
 
     fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {
-        let [sigma, error] =
-            [figure.sigma, figure.error].map(|number| number.map_or_else(String::new, |number| format!("{number:.SPREAD$e}")));
-        let value = format!("{:.VALUE$e}", figure.value);
+        let [sigma, error] = [figure.sigma, figure.error].map(|number| number.map_or_else(String::new, spread));
+        let value = value(figure.value);
         self.row(trial, one, figure.group, &figure.name, [&value, &sigma, &error], figure.unit, ["adjusted", ""])
     }
 
@@ -96,6 +97,21 @@ const VALUE: usize = 8;
 /// Digits of standard deviations and errors behind their first, as records of points have them.
 const SPREAD: usize = 5;
 
+fn value(number: f64) -> String {
+    format!("{number:.VALUE$e}")
+}
+
+fn spread(number: f64) -> String {
+    format!("{number:.SPREAD$e}")
+}
+
+/// The numbers of `figure` as they are read again from the file that holds it.
+pub fn recorded(figure: &Figure) -> Numbers {
+    let read = |text: String| text.parse().unwrap_or(f64::NAN);
+    let [sigma, error] = [figure.sigma, figure.error].map(|number| number.map(|number| read(spread(number))));
+    Numbers { value: read(value(figure.value)), sigma, error }
+}
+
 /// A row of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
@@ -111,6 +127,8 @@ pub struct Row {
     pub name: Arc<str>,
     /// Value, sigma and error, where they are; the reason of a failure otherwise.
     pub figure: Result<Numbers, String>,
+    /// The unit of the three; empty for what has none.
+    pub unit: Arc<str>,
     /// The seed of the run.
     pub seed: u64,
 }
@@ -118,7 +136,7 @@ pub struct Row {
 /// The numbers of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers {
-    /// The value, in the unit that the file's column `unit` gives.
+    /// The value, in [`Row::unit`].
     pub value: f64,
     /// Its standard deviation, in the same unit.
     pub sigma: Option<f64>,
@@ -126,26 +144,58 @@ pub struct Numbers {
     pub error: Option<f64>,
 }
 
-/// Reads a file row by row.
+/// Reads a file row by row; what all its rows share. A file without a row says nothing of its run.
 ///
 /// # Errors
-/// A file that is not one of these, with its line.
-pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<(), RecordError> {
-    let (mut reader, mut record, mut names) = (open(input, &COLUMNS)?, StringRecord::new(), <[Names; 3]>::default());
+/// A file that is not one of these, with its line: among others one whose rows are of several runs, whose trials do not rise, or in which a figure of a trial
+/// stands twice, or in two units.
+pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<RunInfo, RecordError> {
+    let (mut reader, mut record, mut known) = (open(input, &COLUMNS)?, StringRecord::new(), Known::default());
+    let (mut shared, mut run) = (Shared::new([0, 12]), RunInfo::default());
     while reader.read_record(&mut record)? {
-        sink(row(&Cells { record: &record, columns: &COLUMNS }, &mut names)?);
+        let cells = Cells { record: &record, columns: &COLUMNS };
+        shared.check(&cells)?;
+        let row = known.row(&cells)?;
+        if run.scenario.is_empty() {
+            run = RunInfo { scenario: cells.text(0).into(), seed: row.seed, ..run };
+        }
+        sink(row);
     }
-    Ok(())
+    Ok(run)
 }
 
-/// `names` are those of methods, sets and figures that were read before.
-fn row(cells: &Cells<'_>, [methods, sets, figures]: &mut [Names; 3]) -> Result<Row, RecordError> {
-    let group = Group::ALL.iter().find(|(_, name)| *name == cells.text(4)).ok_or_else(|| cells.bad(4))?.0;
-    let figure = match cells.text(10) {
-        "adjusted" => Ok(Numbers { value: cells.number(6)?, sigma: cells.optional_number(7)?, error: cells.optional_number(8)? }),
-        "failed" => Err(cells.text(11).to_owned()),
-        _ => return Err(cells.bad(10)),
-    };
-    let (method, set, name) = (methods.get(cells.text(2)), sets.get(cells.text(3)), figures.get(cells.text(5)));
-    Ok(Row { trial: cells.parse(1)?, method, set, group, name, figure, seed: cells.parse(12)? })
+/// What was read before: names of methods, sets, figures and units, what the trial has said, the figures' units.
+#[derive(Default)]
+struct Known {
+    methods: Names,
+    sets: Names,
+    figures: Names,
+    units: Names,
+    once: Once<4>,
+    unit_of: HashMap<(Group, usize), Arc<str>>,
+}
+
+impl Known {
+    fn row(&mut self, cells: &Cells<'_>) -> Result<Row, RecordError> {
+        let group = Group::ALL.iter().find(|(_, name)| *name == cells.text(4)).ok_or_else(|| cells.bad(4))?.0;
+        let figure = match cells.text(10) {
+            "adjusted" => Ok(Numbers { value: cells.number(6)?, sigma: cells.optional_number(7)?, error: cells.optional_number(8)? }),
+            "failed" => Err(cells.text(11).to_owned()),
+            _ => return Err(cells.bad(10)),
+        };
+        let (method, set, name) = (self.methods.get(cells.text(2)), self.sets.get(cells.text(3)), self.figures.get(cells.text(5)));
+        let (trial, unit) = (cells.parse(1)?, self.units.get(cells.text(9)));
+        self.once.trial(cells, 1, trial)?;
+        let address = |name: &Arc<str>| name.as_ptr().addr();
+        if !self.once.is_new([address(&method), address(&set), group as usize, address(&name)]) {
+            return Err(cells.wrong(&format!("`{method}` says twice what {} `{name}` of set `{set}` is in trial {trial}", group.name())));
+        }
+        if figure.is_ok() {
+            let first = self.unit_of.entry((group, address(&name))).or_insert_with(|| unit.clone());
+            if *first != unit {
+                return Err(cells.other(9, first));
+            }
+        }
+        Ok(Row { trial, method, set, group, name, figure, unit, seed: cells.parse(12)? })
+    }
 }

@@ -72,6 +72,11 @@ impl Cells<'_> {
         self.wrong(&format!("column `{}` holds `{}`", self.columns[column], self.text(column)))
     }
 
+    /// A cell that holds something else than is said elsewhere.
+    pub(crate) fn other(&self, column: usize, expected: &str) -> RecordError {
+        self.wrong(&format!("column `{}` holds `{}`, expected `{expected}`", self.columns[column], self.text(column)))
+    }
+
     /// Its line, counted from 1.
     pub(crate) fn line(&self) -> u64 {
         self.record.position().map_or(0, csv::Position::line)

@@ -10,6 +10,7 @@ mod interned;
 pub mod judgement;
 mod limited;
 pub mod names;
+mod once;
 mod order;
 pub mod parts;
 pub mod plain;

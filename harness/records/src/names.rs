@@ -18,6 +18,11 @@ pub fn cell_name(index: usize) -> String {
     format!("cell-{:04}", index + 1)
 }
 
+/// The name of the run of a scenario's cell, whose label is `label`.
+pub fn cell_run(name: &str, label: &str) -> String {
+    format!("{name}@{label}")
+}
+
 /// The folder of a cell's records in that of its scenario.
 pub fn cell_folder(folder: &Path, index: usize) -> PathBuf {
     folder.join(cell_name(index))

@@ -9,8 +9,9 @@ use csv::StringRecord;
 use crate::cells::{Cells, RecordError, open, write_row};
 use crate::digits::{coordinates, deviation, difference};
 use crate::interned::Names;
+use crate::once::{Once, Shared};
 use crate::order::Order;
-use crate::results::{MethodInfo, Outcome, PointResult, Trial};
+use crate::results::{LOST, MethodInfo, Outcome, PointResult, Trial};
 
 /// The columns of a records file.
 pub const COLUMNS: [&str; 17] = [
@@ -45,6 +46,7 @@ const X_TRUE: usize = 8;
 const Y_TRUE: usize = 9;
 const BOUND: usize = 10;
 const PREDICTED: usize = 11;
+const UNIT: usize = 12;
 const STATUS: usize = 13;
 const REASON: usize = 14;
 const SEED: usize = 15;
@@ -74,6 +76,9 @@ pub struct RecordWriter<W: Write> {
 
 /// Where and of which method a row is: trial, view, target, method, version.
 type Place<'a> = [&'a str; 5];
+
+/// What rounding to the file's decimals may change of a distance, px.
+const DIGITS: f64 = 1e-8;
 
 /// The numbers of a point that was not measured.
 const NONE: [String; 6] = [const { String::new() }; 6];
@@ -170,13 +175,16 @@ pub struct RecordHead {
 /// Reads records and hands on one trial after the other with the methods met so far, which the trial's points index.
 ///
 /// # Errors
-/// A file that was not written by [`RecordWriter`].
+/// A file that was not written by [`RecordWriter`]: among others one whose rows are of several runs, whose trials do not rise, or in which a method says twice
+/// what it made of a target in an image of a trial.
 pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, RecordError> {
     let mut csv = open(input, &COLUMNS)?;
     let mut head = RecordHead { run: RunInfo::default(), methods: Vec::new() };
     let (mut trial, mut names, mut last, mut record) = (None::<Trial>, Known::default(), 0, StringRecord::new());
+    let mut shared = Shared::new([SCENARIO, SEED, REVISION]);
     while csv.read_record(&mut record)? {
         let row = Cells { record: &record, columns: &COLUMNS };
+        shared.check(&row)?;
         if head.run.scenario.is_empty() {
             head.run = RunInfo {
                 scenario: row.text(SCENARIO).into(),
@@ -199,10 +207,10 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
             continue;
         }
         let number = row.parse(TRIAL)?;
-        if trial.as_ref().is_some_and(|trial| trial.number != number) {
+        if names.once.trial(&row, TRIAL, number)? {
             trial.take().into_iter().for_each(|trial| sink(by_method(trial), &head.methods));
         }
-        add(trial.get_or_insert_with(|| Trial { number, ..Trial::default() }), &row, method, &mut names)?;
+        add(trial.get_or_insert_with(|| Trial { number, ..Trial::default() }), &row, (method, &head.methods[method]), &mut names)?;
     }
     trial.into_iter().for_each(|trial| sink(by_method(trial), &head.methods));
     Ok(head)
@@ -220,26 +228,32 @@ fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>, last: usize) -> 
     if label.is_empty() {
         return Err(row.wrong("a row without a method"));
     }
-    if methods.get(last).is_some_and(|method| &*method.label == label) {
-        return Ok(last);
-    }
-    let place = methods.iter().position(|m| &*m.label == label);
-    Ok(place.unwrap_or_else(|| {
+    let is_it = |method: &MethodInfo| &*method.label == label;
+    let place = Some(last).filter(|last| methods.get(*last).is_some_and(is_it)).or_else(|| methods.iter().position(is_it));
+    let Some(place) = place else {
         methods.push(MethodInfo { label: label.into(), version: version.into(), unavailable: None });
-        methods.len() - 1
-    }))
+        return Ok(methods.len() - 1);
+    };
+    if *methods[place].version == *version { Ok(place) } else { Err(row.other(VERSION, &methods[place].version)) }
 }
 
-/// Names of views and targets, each of which is kept once.
+/// Names of views and targets, each of which is kept once, and which of them a trial has had.
 #[derive(Default)]
 struct Known {
     views: Names,
     targets: Names,
+    once: Once<3>,
 }
 
 /// Adds a row to its trial.
-fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Known) -> Result<(), RecordError> {
-    let view = names.views.get(row.text(VIEW));
+fn add(trial: &mut Trial, row: &Cells<'_>, (method, head): (usize, &MethodInfo), names: &mut Known) -> Result<(), RecordError> {
+    let (view, target) = (names.views.get(row.text(VIEW)), names.targets.get(row.text(TARGET)));
+    if head.unavailable.is_some() {
+        return Err(row.wrong(&format!("`{}` is unavailable and says what it made of `{view}/{target}`", head.label)));
+    }
+    if !names.once.is_new([view.as_ptr().addr(), target.as_ptr().addr(), method]) {
+        return Err(row.wrong(&format!("`{}` says twice what it made of `{view}/{target}` in trial {}", head.label, trial.number)));
+    }
     let outcome = match row.text(STATUS) {
         "missed" => {
             // One row a method: the view is missed once.
@@ -251,21 +265,30 @@ fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Known) -> 
         }
         "rejected" => {
             let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(REASON));
+            if let Some(column) = (X..=PREDICTED).find(|column| !row.text(*column).is_empty()) {
+                return Err(row.bad(column));
+            }
             Outcome::Rejected(why.ok_or_else(|| row.wrong("unknown reason"))?)
         }
-        "measured" | "lost" => {
+        status @ ("measured" | "lost") => {
             let position = PixelPoint::new(row.number(X)?, row.number(Y)?);
             let error = match (row.optional_number(X_TRUE)?, row.optional_number(Y_TRUE)?) {
                 (Some(x), Some(y)) => Some((difference(position.x, x), difference(position.y, y))),
                 (None, None) => None,
                 _ => return Err(row.wrong("one of `x_true` and `y_true` without the other")),
             };
+            let distance = error.map_or(0.0, |(dx, dy)| dx.hypot(dy));
+            if (distance - LOST).abs() > DIGITS && (distance > LOST) != (status == "lost") {
+                return Err(row.wrong(&format!("column `status` holds `{status}` {distance:.6} px from the truth")));
+            }
             Outcome::Measured { position, error }
         }
         _ => return Err(row.bad(STATUS)),
     };
+    if row.text(UNIT) != "px" {
+        return Err(row.other(UNIT, "px"));
+    }
     let (bound, predicted) = (row.optional_number(BOUND)?, row.optional_number(PREDICTED)?);
-    let target = names.targets.get(row.text(TARGET));
     trial.points.push(PointResult { bound, predicted, ..PointResult::new(view, target, method, outcome) });
     Ok(())
 }

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use calibench_model::escape;
 use thiserror::Error;
 
 use crate::adjustments::{self, Row};
@@ -11,7 +12,7 @@ use crate::cells::RecordError;
 use crate::judgement::{self, RECORDED_JUDGEMENT};
 use crate::limited::unpacked;
 use crate::names::PART;
-use crate::points::{self, RecordHead};
+use crate::points::{self, RecordHead, RunInfo};
 use crate::results::{MethodInfo, Trial};
 
 /// A table of a run.
@@ -35,6 +36,24 @@ pub enum StoredError {
     /// It is of a part of a run.
     #[error("{}: is a part of a run, and no run: put all parts together with `calibench merge`, then name what that wrote", .0.display())]
     Part(PathBuf),
+    /// It is of another run than its folder says.
+    #[error("{}: holds records of `{}`, expected those of `{expected}`: put them where they belong, or run the scenario again", path.display(), escape::name(found))]
+    Misplaced {
+        /// The file.
+        path: PathBuf,
+        /// The scenario, or the cell of its sweep, of which it is.
+        found: String,
+        /// That of which it should be.
+        expected: String,
+    },
+    /// It does not fit what lies beside it.
+    #[error("{}: {}: run the scenario again", path.display(), escape::name(problem))]
+    Mistaken {
+        /// The file.
+        path: PathBuf,
+        /// How.
+        problem: String,
+    },
     /// A file that cannot be read.
     #[error("{}: {source}", path.display())]
     File {
@@ -125,27 +144,42 @@ pub(crate) fn decompressed(path: &Path) -> Result<impl Read + use<>, StoredError
     unpacked(file).map_err(|source| StoredError::File { path: path.to_owned(), source })
 }
 
-/// Reads the points of the run in `folder`, as [`points::read_records`] hands them on.
+/// Reads the points of the run in `folder`, as [`points::read_records`] hands them on. `name` is that of the scenario, for a cell of its sweep with `@` and the
+/// cell's label behind it.
 ///
 /// # Errors
-/// As [`Table::open`]; a file that was not written by this version.
-pub fn read_points(folder: &Path, sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, StoredError> {
-    points::read_records(Table::Points.open(folder)?, sink).map_err(Table::Points.wrong(folder))
+/// As [`Table::open`]; a file that was not written by this version, or of another run.
+pub fn read_points(folder: &Path, name: &str, sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, StoredError> {
+    let head = points::read_records(Table::Points.open(folder)?, sink).map_err(Table::Points.wrong(folder))?;
+    belongs(folder.join(Table::Points.file()), &head.run.scenario, name)?;
+    Ok(head)
 }
 
-/// Reads the adjustments of the run in `folder`, row by row.
+/// Reads the adjustments of the run in `folder`, row by row; what all rows share. `name` is as for [`read_points`].
 ///
 /// # Errors
-/// As [`Table::open`]; a file that was not written by this version.
-pub fn read_adjustments(folder: &Path, sink: impl FnMut(Row)) -> Result<(), StoredError> {
-    adjustments::read(Table::Adjustments.open(folder)?, sink).map_err(Table::Adjustments.wrong(folder))
+/// As [`read_points`].
+pub fn read_adjustments(folder: &Path, name: &str, sink: impl FnMut(Row)) -> Result<RunInfo, StoredError> {
+    let run = adjustments::read(Table::Adjustments.open(folder)?, sink).map_err(Table::Adjustments.wrong(folder))?;
+    belongs(folder.join(Table::Adjustments.file()), &run.scenario, name)?;
+    Ok(run)
 }
 
-/// Reads the judgement of the run in `folder`: its seed and its rows.
+/// Reads the judgement of the run of `name` in `folder`: its seed and its rows.
 ///
 /// # Errors
-/// As [`open()`]; a file that was not written by this version.
-pub fn read_judgement(folder: &Path) -> Result<(u64, Vec<judgement::Row>), StoredError> {
+/// As [`open()`]; a file that was not written by this version, or of another run.
+pub fn read_judgement(folder: &Path, name: &str) -> Result<(u64, Vec<judgement::Row>), StoredError> {
     let path = folder.join(RECORDED_JUDGEMENT);
-    judgement::read_rows(open(&path)?).map_err(|source| StoredError::Records { path, source })
+    let (run, rows) = judgement::read_rows(open(&path)?).map_err(|source| StoredError::Records { path: path.clone(), source })?;
+    belongs(path, &run.scenario, name)?;
+    Ok((run.seed, rows))
+}
+
+/// A table without a row is of no run.
+fn belongs(path: PathBuf, found: &str, expected: &str) -> Result<(), StoredError> {
+    if found.is_empty() || found == expected {
+        return Ok(());
+    }
+    Err(StoredError::Misplaced { path, found: found.to_owned(), expected: expected.to_owned() })
 }

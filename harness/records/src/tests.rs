@@ -103,6 +103,27 @@ fn messages_name_line_and_column() {
     insta::assert_snapshot!(messages.join("\n"));
 }
 
+#[test]
+fn adjustments_that_do_not_belong_together_are_refused() {
+    let first = "s,1,m,c,iop,c,1,2,3,mm,adjusted,,1\ns,1,m,c,check,,,,,,failed,no point,1\n";
+    for (row, expected) in [
+        ("s,1,m,c,iop,c,1.5,2,3,mm,adjusted,,1", "line 4: `m` says twice what iop `c` of set `c` is in trial 1"),
+        ("s,1,m,c,check,,,,,,failed,no view,1", "line 4: `m` says twice what check `` of set `c` is in trial 1"),
+        ("s,0,m,c,iop,c,1,2,3,mm,adjusted,,1", "line 4: column `trial` holds `0`, expected `1 or more`"),
+        ("s,2,m,c,iop,c,1,2,3,px,adjusted,,1", "line 4: column `unit` holds `px`, expected `mm`"),
+        ("z,1,m,c,iop,x0,1,2,3,mm,adjusted,,1", "line 4: column `scenario` holds `z`, expected `s`"),
+        ("s,1,m,c,iop,x0,1,2,3,mm,adjusted,,2", "line 4: column `seed` holds `2`, expected `1`"),
+    ] {
+        let text = format!("{}\n{first}{row}\n", adjustments::COLUMNS.join(","));
+        let error = adjustments::read(text.as_bytes(), |_| ()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{row}: {error}");
+    }
+    for row in ["s,1,n,c,iop,c,1,2,3,mm,adjusted,,1", "s,1,m,d,iop,c,1,2,3,mm,adjusted,,1", "s,1,m,c,eop,c,1,2,3,m,adjusted,,1"] {
+        let text = format!("{}\n{first}{row}\n", adjustments::COLUMNS.join(","));
+        assert_eq!(adjustments::read(text.as_bytes(), |_| ()).unwrap().scenario, "s", "{row}");
+    }
+}
+
 /// Takes nothing: what a writer says to it at the end must not be lost.
 struct Full;
 

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use calibench_records::description::Sweep;
-use calibench_records::names::cell_folder;
 use rayon::prelude::*;
 
 use crate::composed::Composed;
@@ -87,7 +86,7 @@ fn boards(records: &Path, name: &str) -> Result<Option<Either>, LoadError> {
     let folder = records.join(name);
     let of_boards = |sweep: &Sweep| sweep.axes.first().is_some_and(|axis| axis.path == targets::BOARD);
     let Some(sweep) = description(&folder, name)?.and_then(|scenario| scenario.sweep).filter(of_boards) else { return Ok(None) };
-    let read: Vec<_> = (0..sweep.cells.len()).into_par_iter().map(|cell| adjustments::load_cell(&cell_folder(&folder, cell))).collect();
+    let read: Vec<_> = (0..sweep.cells.len()).into_par_iter().map(|cell| adjustments::load_cell(&folder, (name, &sweep, cell))).collect();
     let figures = read.into_iter().collect::<Result<Vec<_>, _>>()?;
     Ok(match shown_as(sweep.axes.len(), &figures) {
         Shown::Detectors => Detectors::load(records, name, figures)?.map(|found| Either::Detectors(Box::new(found))),

@@ -128,7 +128,7 @@ fn judged(loaded: &Loaded) -> Said {
 /// The judgement that the scenario asks for, or why its records cannot be read.
 fn judgement_of(loaded: &Loaded) -> Option<Result<Summary, String>> {
     let wanted = matches!(loaded.scenario.subject, Subject::Photographs { judged: true });
-    let read = || read_judgement(&loaded.folder).map_err(|error| error.to_string());
+    let read = || read_judgement(&loaded.folder, &loaded.name).map_err(|error| error.to_string());
     wanted.then(|| read().map(|(seed, rows)| Summary::new(&rows, seed)))
 }
 

@@ -129,7 +129,7 @@ pub fn sweep(loaded: &LoadedSweep) -> Result<Option<String>, LoadError> {
     let mut rows = MarkdownTable::new(&header(&first));
     let mut any = false;
     for index in 0..loaded.cells.len() {
-        let Some(found) = load(&cell_folder(&loaded.folder, index))? else { continue };
+        let Some(found) = load(&cell_folder(&loaded.folder, index), &loaded.sweep.run(&loaded.name, index))? else { continue };
         let Some(counts) = Counts::of(&found) else { continue };
         any = true;
         let values: Vec<String> = loaded.sweep.values(index).into_iter().map(|value| value.text.clone()).collect();

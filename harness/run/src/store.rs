@@ -11,7 +11,7 @@ use calibench_model::Told;
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::compressor::Compressor;
 use calibench_records::description::write as write_description;
-use calibench_records::names::{DESCRIPTION, ORIGIN, PART, SCENARIO, cell_name};
+use calibench_records::names::{DESCRIPTION, ORIGIN, PART, SCENARIO, cell_name, cell_run};
 use calibench_records::parts::Span;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::Outcome;
@@ -273,7 +273,7 @@ pub(crate) fn fill_sweep(
         let cell = plan.cell(index)?;
         let run = Plan { only, ..plan.plan(&cell) };
         let (folder, label) = (folder.folder(&cell_name(index))?, plan.sweep.label(index));
-        measured += write_records(&folder, &format!("{}@{label}", plan.order.scenario.name), &run, revision, &|| ())?;
+        measured += write_records(&folder, &cell_run(&plan.order.scenario.name, &label), &run, revision, &|| ())?;
         step();
     }
     Ok(measured)

@@ -1,6 +1,7 @@
 //! The gate as CI meets it.
 
 mod init;
+mod recorded;
 mod requirement;
 
 use std::path::Path;

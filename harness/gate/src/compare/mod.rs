@@ -8,7 +8,7 @@ use super::missing;
 use super::pairs::Pairs;
 use super::point_by_point::{exact, status, worse_status};
 use super::point_entry::Coordinates;
-use super::table::{MethodTable, Table};
+use super::table::{MethodTable, Table, is_foreign};
 use super::{LEAST_PAIRS, TOLERANCE};
 
 /// By how much, px, the points of a library's other version may move, as a root mean square, where no truth can judge them.
@@ -53,7 +53,7 @@ impl Compared {
     fn method(&mut self, table: &Table, label: &str, [base, now]: [&MethodTable; 2], changes: &Changes<'_>, deterministic: bool) {
         let name = table.scenario.as_str();
         let single = deterministic || table.coordinates == Coordinates::Positions;
-        let foreign = !base.library.is_empty() && !now.library.is_empty() && base.library != now.library;
+        let foreign = is_foreign(&base.library, &now.library);
         self.findings.extend(lost_sigmas(name, label, changes));
         if single && !foreign {
             self.findings.extend(exact(table, label, [base, now], changes));

@@ -55,7 +55,7 @@ impl FigureSum {
     fn same(&self, other: &Self, group: Group) -> bool {
         let own = if is_error(group) { ERROR_SIGMA * self.mean.abs() } else { 0.0 };
         let scale = self.sigma.unwrap_or(own).max(self.scatter).max(self.error.unwrap_or(0.0));
-        let agree_within = |digits: f64, a: f64, b: f64| (a - b).abs() <= SAME * scale + digits || (a.is_nan() && b.is_nan());
+        let agree_within = |digits: f64, a: f64, b: f64| (a - b).abs() <= SAME * scale + digits || a == b || (a.is_nan() && b.is_nan());
         let agree = |a: f64, b: f64| agree_within(DIGITS * a.abs(), a, b);
         let optional = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => agree(a, b),

@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use super::{holding, measured, method};
+use super::{NO_CORNER, holding, lost, measured, method};
 use crate::{
-    Baselines, Cells, Check, Coordinates, FigureSums, IndexError, Measured, MethodTable, Numbers, PointSums, Results, Table, Verdicts,
+    Baselines, Cells, Check, Coordinates, Entry, FigureSums, IndexError, Kept, Measured, MethodTable, Numbers, PointSums, Results, Table,
+    Verdicts,
 };
 use calibench_records::results::Group;
 
@@ -29,7 +30,8 @@ fn sums(dx: f64) -> Cells<PointSums> {
 
 /// A scenario with figures and a sweep; both lie at `dx`.
 fn today(dx: f64) -> [Results; 2] {
-    let of = |scenario: &str, measured, figures| Results { scenario: scenario.into(), deterministic: true, measured, figures };
+    let of =
+        |scenario: &str, measured, figures| Results { scenario: scenario.into(), deterministic: true, measured, figures, images: None };
     [of("f/s", Measured::Points(points(dx)), Some(figures(dx))), of("f/w", Measured::Sums(sums(dx)), None)]
 }
 
@@ -39,9 +41,10 @@ fn words(word: &str) -> Verdicts {
 
 fn bless(folder: &Path, all: &[Results], mut verdicts: Verdicts) -> String {
     let baselines = Baselines::open_or_new(folder).unwrap();
+    let gone = baselines.gone(all, &verdicts, true).unwrap();
     let mut changes: Vec<_> = all.iter().flat_map(|one| baselines.changes(one)).collect();
     changes.extend(baselines.changed_verdicts(&mut verdicts, true));
-    let (news, gone) = (changes.iter().map(|change| change.news.as_str()).collect(), baselines.gone(all));
+    let news = changes.iter().map(|change| change.news.as_str()).collect();
     let mut written = 0;
     baselines.bless(&changes, &gone, &mut |path| written += usize::from(path.is_file())).unwrap();
     assert_eq!(written, changes.len());
@@ -107,22 +110,95 @@ fn what_is_not_blessed_what_is_gone_and_what_was_tampered_with_are_named() {
         found(folder, &absent, &words("reproduces"), true),
         ["f/s: not compared: unavailable: x", "f/w: not compared: unavailable: x"]
     );
-    assert_eq!(Baselines::open(folder).unwrap().gone(&absent), Vec::<std::path::PathBuf>::new(), "not compared is not gone");
+    let gone = Baselines::open(folder).unwrap().gone(&absent, &words("reproduces"), true).unwrap();
+    assert_eq!(gone, Vec::<std::path::PathBuf>::new(), "not compared is not gone");
     assert!(absent.iter().all(|one| one.table().is_none()) && today(0.1)[0].table().is_some());
 
     let [_, sweep] = today(0.1);
     let gone = found(folder, &[sweep], &words("reproduces"), true);
     assert!(gone.len() == 2 && gone.iter().all(|finding| finding.contains("the scenario is gone")), "{gone:?}");
-    fs::write(folder.join("x--y.csv"), "").unwrap();
-    fs::write(folder.join("f--w.csv"), fs::read_to_string(folder.join("f--s.csv")).unwrap()).unwrap();
+    for copy in ["x--y.csv", "f--w.csv"] {
+        fs::copy(folder.join("f--s.csv"), folder.join(copy)).unwrap();
+    }
+    fs::write(folder.join("notes.csv"), "kept by somebody\n").unwrap();
     let found_now = found(folder, &today(0.1), &words("reproduces"), true);
     assert!(found_now.iter().any(|finding| finding.starts_with("x/y: there is no such scenario")), "{found_now:?}");
     assert!(found_now.iter().any(|finding| finding.starts_with("f/w: ")), "{found_now:?}");
-    fs::remove_file(folder.join("x--y.csv")).unwrap();
+    assert!(!found_now.iter().any(|finding| finding.contains("notes")), "{found_now:?}");
     // A file that is not as it was blessed is replaced as if there were none.
     let news = bless(folder, &today(0.1), words("reproduces"));
     assert_eq!(news, "f/w: new baseline of 20 points or figures in 1 cells\n");
     let [_, sweep] = today(0.1);
     bless(folder, &[sweep], words("reproduces"));
     assert!(!folder.join("f--s.csv").exists() && !folder.join("f--s.figures.csv").exists());
+    assert!(!folder.join("x--y.csv").exists() && folder.join("notes.csv").exists(), "only what a blessing wrote goes");
+}
+
+/// What is blessed passes the strictest check, whatever it is.
+#[test]
+fn a_blessing_leaves_what_a_check_accepts() {
+    let nan = f64::NAN;
+    let entries = [measured([0.1, 0.2], Some(123.456_789_1)), measured([nan, 0.1], Some(nan)), lost([5e8, nan]), NO_CORNER];
+    let numbers = [[1e9, 0.0], [nan, 1.0], [f64::INFINITY, f64::INFINITY], [-1e-300, 1e-300]];
+    let mut kinds = vec![("empty", MethodTable::new("1".into()))];
+    let named = |entries: &[Entry]| method(entries.iter().enumerate().flat_map(|(i, entry)| (0..3).map(move |t| (t, NAMES[i], *entry))));
+    kinds.push(("points", named(&entries)));
+    kinds.push(("rejected alone", named(&[NO_CORNER])));
+    let mut adjusted = named(&entries[..1]);
+    adjusted.images = named(&entries).points;
+    for (place, [value, sigma]) in numbers.into_iter().enumerate() {
+        let numbers = Numbers { value, sigma: Some(sigma), error: Some(value) };
+        adjusted.figures.insert((place, Group::Iop, "c".into()), (0..3).map(|trial| (trial, numbers)).collect());
+    }
+    kinds.push(("adjusted", adjusted.clone()));
+    kinds.push(("figures alone", MethodTable { points: Default::default(), images: Default::default(), ..adjusted }));
+    for coordinates in [Coordinates::Errors, Coordinates::Positions] {
+        for (what, method) in &kinds {
+            let folder = tempfile::tempdir().unwrap();
+            let table = holding(coordinates, method.clone());
+            let all = || [swept(&table, false), swept(&table, true)];
+            bless(folder.path(), &all(), Verdicts::default());
+            assert_eq!(found(folder.path(), &all(), &Verdicts::default(), true), Vec::<String>::new(), "{what}, {coordinates:?}");
+            // What made a file and does not any more is blessed away, also by itself.
+            let bare = holding(coordinates, named(&entries[..1]));
+            let one = [swept(&bare, false)];
+            let baselines = Baselines::open(folder.path()).unwrap();
+            let (changes, gone) = (baselines.changes(&one[0]), baselines.gone(&one, &Verdicts::default(), false).unwrap());
+            let baselines = Baselines::open(folder.path()).unwrap();
+            baselines.bless(&changes, &gone, &mut |_| ()).unwrap();
+            let [_, sweep] = all();
+            drop(changes);
+            let [one] = one;
+            assert_eq!(found(folder.path(), &[one, sweep], &Verdicts::default(), true), Vec::<String>::new(), "{what}, {coordinates:?}");
+        }
+    }
+    // Verdicts of which none is left.
+    let folder = tempfile::tempdir().unwrap();
+    bless(folder.path(), &today(0.1), words("reproduces"));
+    bless(folder.path(), &today(0.1), Verdicts::default());
+    assert_eq!(found(folder.path(), &today(0.1), &Verdicts::default(), true), Vec::<String>::new());
+    assert!(folder.path().join(crate::CEILINGS).is_file(), "a check asks for it");
+}
+
+const NAMES: [&str; 4] = ["a", "b", "c", "d"];
+
+/// The run of `table` as a scenario, or as one that is `swept` with it in both cells.
+fn swept(table: &Table, swept: bool) -> Results {
+    let name = if swept { "f/w" } else { "f/s" };
+    let labels: &[&str] = if swept { &["x=1", "x=2"] } else { &[""] };
+    let measured = if swept { Measured::Sums(cells(name, table, labels)) } else { Measured::Points(table.clone()) };
+    let (figures, images) = (cells(name, table, labels), cells(name, table, labels));
+    Results {
+        scenario: name.into(),
+        deterministic: false,
+        measured,
+        figures: (!figures.is_empty()).then_some(figures),
+        images: (!images.is_empty()).then_some(images),
+    }
+}
+
+fn cells<T: Kept>(name: &str, table: &Table, labels: &[&str]) -> Cells<T> {
+    let mut cells = Cells::new(name, "", 7, table.coordinates);
+    labels.iter().for_each(|label| cells.add(label, table));
+    cells
 }

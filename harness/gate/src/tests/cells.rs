@@ -1,8 +1,8 @@
 //! Sweeps, cell by cell: a digest sees every change, the sums judge it.
 
 use super::{info, point, rejected};
-use crate::{Cells, Coordinates, Finding, PointSums, Table, Verdict};
-use calibench_records::results::{PointResult, Trial};
+use crate::{Cells, Coordinates, Finding, ImageSums, PointSums, Table, Verdict};
+use calibench_records::results::{Calibrated, Figure, Group, PointResult, Trial};
 
 /// Twelve trials of three targets, with errors that look random within 0.1 px.
 fn table(change: impl Fn(u64, usize, [f64; 2]) -> Option<[f64; 2]>) -> Table {
@@ -121,4 +121,52 @@ fn reported_standard_deviations_of_cells_are_judged() {
     assert_eq!(verdict(&with(0.1).compare(&with(0.101))), Some(Verdict::Changed));
     assert_eq!(verdict(&with(0.1).compare(&with(0.05))), Some(Verdict::Fails));
     assert_eq!(verdict(&with(0.05).compare(&with(0.1))), Some(Verdict::Changed));
+}
+
+/// Another version of a library informs, and one that nobody knows excuses nothing, in a cell as elsewhere.
+#[test]
+fn only_another_version_of_a_library_excuses_a_change() {
+    for (blessed, now, expected) in [
+        ("OpenCV 4.10", "OpenCV 4.12", Verdict::Informs),
+        ("OpenCV 4.10", "OpenCV 4.10", Verdict::Changed),
+        ("OpenCV 4.10", "", Verdict::Changed),
+        ("", "OpenCV 4.10", Verdict::Changed),
+    ] {
+        let of = |library: &str, version: &str, factor: f64| {
+            let mut table = table(move |_, _, [x, y]| Some([factor * x, factor * y]));
+            table.describe("m", String::new(), library.to_owned());
+            table.method_mut(&"m".into(), &"1".into()).version = version.into();
+            table
+        };
+        let (old, new) = (of(blessed, "1", 1.0), of(now, "1", 0.99));
+        assert_eq!(verdict(&cells(&[("k=1", old.clone())]).compare(&cells(&[("k=1", new)]))), Some(expected), "{blessed} {now}");
+        // The version by itself, in a sweep and in a scenario without one.
+        let other = of(now, "2", 1.0);
+        assert_eq!(verdict(&cells(&[("k=1", old.clone())]).compare(&cells(&[("k=1", other.clone())]))), Some(expected), "{blessed} {now}");
+        assert_eq!(verdict(&crate::compare(&old, &other, false)), Some(expected), "{blessed} {now}");
+    }
+}
+
+/// The image points behind adjustments are no points of the method, and are compared all the same.
+#[test]
+fn image_points_of_adjustments_are_compared() {
+    let of = |off: f64| {
+        let mut table = Table::new("f/s", 7, Coordinates::Errors, &[info("m", "1")]);
+        let figures = vec![Figure::plain(Group::Frame, "rms", 0.25, "px")];
+        let calibrations = vec![Calibrated { method: 0, set: 0, outcome: Ok(figures), check_failed: None }];
+        let points = vec![point(0, "a", [0.1, 0.2]), point(0, "b", [0.3 + off, 0.0])];
+        table.add(&Trial { points, calibrations, ..Trial::default() });
+        let mut cells = Cells::<ImageSums>::new("f/s", "", 7, Coordinates::Errors);
+        cells.add("", &table);
+        cells
+    };
+    assert_eq!((of(0.0).counts(), of(0.0).compare(&of(0.0)).len()), ([1, 2], 0));
+    assert_eq!(verdict(&of(0.0).compare(&of(-0.01))), Some(Verdict::Changed));
+    assert_eq!(verdict(&of(0.0).compare(&of(0.2))), Some(Verdict::Fails));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.images.csv");
+    of(0.0).write(&path).unwrap();
+    let (again, _) = Cells::<ImageSums>::read(&path, "f/s").unwrap().unwrap();
+    assert!(again.compare(&of(0.0)).is_empty() && !again.compare(&of(2e-6)).is_empty());
+    assert!(Cells::<PointSums>::read(&path, "f/s").is_err(), "of another kind");
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::names::cell_run;
+
 /// The swept keys of a scenario and its cells, each the scenario with one value of each key.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -66,6 +68,14 @@ impl Sweep {
     /// Never for an index below the number of cells.
     pub fn values(&self, index: usize) -> Vec<&Value> {
         self.axes.iter().zip(&self.cells[index].places).map(|(axis, place)| &axis.values[*place]).collect()
+    }
+
+    /// The name of the run of cell `index` of the scenario `name`, as its records have it.
+    ///
+    /// # Panics
+    /// Never for an index below the number of cells.
+    pub fn run(&self, name: &str, index: usize) -> String {
+        cell_run(name, &self.cells[index].label)
     }
 
     /// The label of method `label` without its swept parameters: what is the same method in all cells.

@@ -4,6 +4,7 @@ use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 use crate::cells::{Cells, RecordError, open, write_row};
+use crate::once::Shared;
 use crate::points::RunInfo;
 
 /// The file's name in a folder that a user asked for.
@@ -100,22 +101,25 @@ pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> io::Result
     writer.flush()
 }
 
-/// Reads what [`write_rows`] wrote, and the seed.
+/// Reads what [`write_rows`] wrote, and what all rows share; of a file without a row that is nothing.
 ///
 /// # Errors
-/// A file of another form.
-pub fn read_rows(input: impl Read) -> Result<(u64, Vec<Row>), RecordError> {
-    let (mut seed, mut rows) = (0, Vec::new());
+/// A file of another form, rows of several runs.
+pub fn read_rows(input: impl Read) -> Result<(RunInfo, Vec<Row>), RecordError> {
+    let (mut run, mut rows, mut shared) = (RunInfo::default(), Vec::new(), Shared::new([0, 11, 12]));
     for record in open(input, &COLUMNS)?.records() {
         let record = record?;
         let cells = Cells { record: &record, columns: &COLUMNS };
-        seed = cells.parse(11)?;
+        shared.check(&cells)?;
+        if rows.is_empty() {
+            run = RunInfo { scenario: cells.text(0).into(), seed: cells.parse(11)?, revision: cells.text(12).into(), detector: None };
+        }
         let [method, model, measure, place] = [1, 2, 3, 4].map(|column| cells.text(column).into());
         let [unit, status, reason] = [8, 9, 10].map(|column| cells.text(column).into());
         let (value, sigma, count) = (cells.optional_number(5)?, cells.optional_number(6)?, cells.optional(7)?);
         rows.push(Row { method, model, measure, place, value, sigma, count, unit, status, reason });
     }
-    Ok((seed, rows))
+    Ok((run, rows))
 }
 
 #[cfg(test)]
@@ -133,7 +137,7 @@ mod tests {
         let run = RunInfo { scenario: "f/s".into(), seed: 7, revision: "r".into(), detector: None };
         let mut bytes = Vec::new();
         write_rows(&mut bytes, &run, &rows).unwrap();
-        assert_eq!(read_rows(&bytes[..]).unwrap(), (7, rows));
+        assert_eq!(read_rows(&bytes[..]).unwrap(), (run, rows));
         assert!(read_rows(&b"a,b\n"[..]).is_err());
     }
 }

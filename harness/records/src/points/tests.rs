@@ -70,10 +70,41 @@ fn other_files_are_refused() {
         ("s,0,v,t,m,1,1,2,0.5,,,,px,measured,,0,r\n", "line 2: one of `x_true` and `y_true` without the other"),
         ("s,0,v,t,m,1,1,2,,,inf,,px,measured,,0,r\n", "line 2: column `bound` holds `inf`"),
         ("s,-1,v,t,m,1,1,2,,,,,px,measured,,0,r\n", "line 2: column `trial` holds `-1`"),
+        ("s,0,v,t,m,1,1,2,,,,,mm,measured,,0,r\n", "line 2: column `unit` holds `mm`, expected `px`"),
+        ("s,0,v,t,m,1,1,2,,,,,px,rejected,no-corner,0,r\n", "line 2: column `x` holds `1`"),
+        ("s,0,v,t,m,1,1,2,4,6,,,px,measured,,0,r\n", "line 2: column `status` holds `measured` 5.000000 px from the truth"),
+        ("s,0,v,t,m,1,1,2,1,2.5,,,px,lost,,0,r\n", "line 2: column `status` holds `lost` 0.500000 px from the truth"),
     ] {
         let text = format!("{}\n{rows}", COLUMNS.join(","));
         let error = read_records(text.as_bytes(), |_, _| ()).unwrap_err().to_string();
         assert!(error.contains(expected), "{rows}: {error}");
+    }
+}
+
+/// Rows that are each well formed, and contradict each other.
+#[test]
+fn rows_that_do_not_belong_together_are_refused() {
+    let first = "s,1,v,t,m,1,1,2,,,,,px,measured,,0,r\n";
+    let unavailable = "s,,,,b,2,,,,,,,,unavailable,why,0,r\n";
+    for (row, expected) in [
+        ("s,1,v,t,m,1,1.5,2,,,,,px,measured,,0,r\n", "line 4: `m` says twice what it made of `v/t` in trial 1"),
+        ("s,1,v,t,m,1,,,,,,,px,rejected,no_corner,0,r\n", "line 4: `m` says twice"),
+        ("s,0,v,t,m,1,1,2,,,,,px,measured,,0,r\n", "line 4: column `trial` holds `0`, expected `1 or more`"),
+        ("z,1,v,u,m,1,1,2,,,,,px,measured,,0,r\n", "line 4: column `scenario` holds `z`, expected `s`"),
+        ("s,1,v,u,m,1,1,2,,,,,px,measured,,7,r\n", "line 4: column `seed` holds `7`, expected `0`"),
+        ("s,1,v,u,m,1,1,2,,,,,px,measured,,0,q\n", "line 4: column `revision` holds `q`, expected `r`"),
+        ("s,1,v,u,m,2,1,2,,,,,px,measured,,0,r\n", "line 4: column `version` holds `2`, expected `1`"),
+        ("s,2,v,t,b,2,1,2,,,,,px,measured,,0,r\n", "line 4: `b` is unavailable and says what it made of `v/t`"),
+    ] {
+        let text = format!("{}\n{unavailable}{first}{row}", COLUMNS.join(","));
+        let error = read_records(text.as_bytes(), |_, _| ()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{row}: {error}");
+    }
+    for row in
+        ["s,1,w,t,m,1,1,2,,,,,px,measured,,0,r\n", "s,1,v,t,n,1,1,2,,,,,px,measured,,0,r\n", "s,2,v,t,m,1,1,2,,,,,px,measured,,0,r\n"]
+    {
+        let text = format!("{}\n{unavailable}{first}{row}", COLUMNS.join(","));
+        assert!(read_records(text.as_bytes(), |_, _| ()).is_ok(), "{row}");
     }
 }
 

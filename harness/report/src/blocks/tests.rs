@@ -52,7 +52,7 @@ fn summaries() -> Summaries {
     let mut writer = CalibrationWriter::new(file, run, methods, SETS.map(Into::into).to_vec()).unwrap();
     (0..2).for_each(|number| writer.trial(number, &trial(number)).unwrap());
     writer.finish().unwrap().finish().unwrap();
-    load(folder.path()).unwrap().unwrap()
+    load(folder.path(), "s").unwrap().unwrap()
 }
 
 /// The cells of all rows of a text, headers too.

@@ -5,6 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use calibench_records::adjustments::{Numbers, Row};
+use calibench_records::description::Sweep;
+use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
 use calibench_records::statistics::running::{Paired, Running};
 use calibench_records::stored::{Table, read_adjustments};
@@ -54,35 +56,43 @@ pub struct Summaries {
     pub failed: BTreeMap<(String, String, Group), (u64, String)>,
 }
 
-/// Reads the adjustments in a scenario's folder; `None` if it has none.
+/// Reads the adjustments of the scenario `name` in its folder; `None` if it has none.
 ///
 /// # Errors
 /// A file that is not whole or not of this version.
-pub fn load(folder: &Path) -> Result<Option<Summaries>, LoadError> {
-    read(folder, Reader { keeps_residuals: true, ..Reader::default() }, |_| ())
+pub fn load(folder: &Path, name: &str) -> Result<Option<Summaries>, LoadError> {
+    read(folder, name, Reader { keeps_residuals: true, ..Reader::default() }, |_| ())
 }
 
-/// Reads the adjustments in the folder of a cell of a sweep, without their residuals; `None` if it has none.
+/// A cell of a sweep: the scenario's name, its sweep, the cell's place.
+pub type CellOf<'a> = (&'a str, &'a Sweep, usize);
+
+/// Reads the adjustments of a cell of a sweep, which lies in the scenario's `folder`, without their residuals; `None` if it has none.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_cell(folder: &Path) -> Result<Option<Summaries>, LoadError> {
-    load_cell_with(folder, |_| ())
+pub fn load_cell(folder: &Path, cell: CellOf<'_>) -> Result<Option<Summaries>, LoadError> {
+    load_cell_with(folder, cell, |_| ())
 }
 
 /// As [`load_cell`]; `watch` is shown every row.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_cell_with(folder: &Path, watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
-    read(folder, Reader::default(), watch)
+pub fn load_cell_with(folder: &Path, (name, sweep, index): CellOf<'_>, watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
+    load_with(&cell_folder(folder, index), &sweep.run(name, index), watch)
 }
 
-fn read(folder: &Path, mut reader: Reader, mut watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
+/// The adjustments of the run called `name` in `folder`, without their residuals; `watch` is shown every row.
+pub(crate) fn load_with(folder: &Path, name: &str, watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
+    read(folder, name, Reader::default(), watch)
+}
+
+fn read(folder: &Path, name: &str, mut reader: Reader, mut watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
     if !Table::Adjustments.is_in(folder)? {
         return Ok(None);
     }
-    read_adjustments(folder, |row| {
+    read_adjustments(folder, name, |row| {
         watch(&row);
         reader.add(row);
     })?;
@@ -251,7 +261,7 @@ mod tests {
 
     fn row(trial: u64, method: &str, name: &str, figure: Result<(f64, f64, f64), &str>) -> Row {
         let figure = figure.map(|(value, sigma, error)| Numbers { value, sigma: Some(sigma), error: Some(error) }).map_err(str::to_owned);
-        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure, seed: 7 }
+        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure, unit: "mm".into(), seed: 7 }
     }
 
     fn close(found: Option<f64>, expected: f64) {

@@ -47,13 +47,13 @@ pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
     let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
     let mut first = None;
     // The methods of a file are named as they come.
-    let head = read_points(&folder, |trial, methods| {
+    let head = read_points(&folder, name, |trial, methods| {
         scores.limited = limited(methods);
         scores.add(&trial, |method| methods.get(method).is_some_and(|info| scenario.compares(&info.label)));
         first.get_or_insert(trial);
     })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
-    let calibrations = adjustments::load(&folder)?;
+    let calibrations = adjustments::load(&folder, name)?;
     Ok(Loaded { name: name.to_owned(), calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
 }
 

@@ -81,8 +81,7 @@ pub fn load_with<T: Gather>(records: &Path, name: &str) -> Result<Option<(Loaded
     let folder = records.join(name);
     let Some(mut scenario) = description(&folder, name)? else { return Ok(None) };
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
-    let read: Vec<_> =
-        (0..sweep.cells.len()).into_par_iter().map(|index| read_cell(&cell_folder(&folder, index), &scenario, &sweep)).collect();
+    let read: Vec<_> = (0..sweep.cells.len()).into_par_iter().map(|index| read_cell(&folder, index, (name, &scenario, &sweep))).collect();
     let mut loaded = LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder };
     let mut gathered = Vec::new();
     for cell in read {
@@ -95,10 +94,14 @@ pub fn load_with<T: Gather>(records: &Path, name: &str) -> Result<Option<(Loaded
 }
 
 /// What a cell's records hold: run and methods, figures, and what is gathered.
-fn read_cell<T: Gather>(folder: &Path, scenario: &Description, sweep: &Sweep) -> Result<(RecordHead, Scores, T), LoadError> {
+fn read_cell<T: Gather>(
+    folder: &Path,
+    index: usize,
+    (name, scenario, sweep): (&str, &Description, &Sweep),
+) -> Result<(RecordHead, Scores, T), LoadError> {
     let mut scores = Scores { groups: groups(scenario), ..Scores::default() };
     let (mut names, mut gathered) = (Vec::new(), T::default());
-    let head = read_points(folder, |trial, methods| {
+    let head = read_points(&cell_folder(folder, index), &sweep.run(name, index), |trial, methods| {
         // The methods of a file are named as they come.
         if names.len() != methods.len() {
             names = methods.iter().map(|info| sweep.method(&info.label)).collect();

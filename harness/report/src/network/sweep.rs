@@ -1,6 +1,5 @@
 //! A sweep of a calibrated scenario: how the reduction factor depends on what is swept.
 
-use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
 use rayon::prelude::*;
 
@@ -24,7 +23,8 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         return Ok(None);
     }
     let mut cells = Vec::new();
-    let read: Vec<_> = (0..loaded.cells.len()).into_par_iter().map(|index| load_cell(&cell_folder(&loaded.folder, index))).collect();
+    let read: Vec<_> =
+        (0..loaded.cells.len()).into_par_iter().map(|index| load_cell(&loaded.folder, (&loaded.name, &loaded.sweep, index))).collect();
     for (index, found) in read.into_iter().enumerate() {
         if let Some(found) = found? {
             cells.push((loaded.sweep.values(index)[0].clone(), found));

@@ -40,7 +40,7 @@ fn summaries() -> Summaries {
         writer.trial(number as u64, &all).unwrap();
     }
     writer.finish().unwrap().finish().unwrap();
-    load(folder.path()).unwrap().unwrap()
+    load(folder.path(), "s").unwrap().unwrap()
 }
 
 fn cell(metric: Metric) -> Cell {
@@ -144,7 +144,7 @@ fn images_that_were_left_out_are_said() {
         writer.trial(number, &[calibrated(0, [16.5, 0.01, 0.001], 0.002, false), some]).unwrap();
     }
     writer.finish().unwrap().finish().unwrap();
-    let found = load(folder.path()).unwrap().unwrap();
+    let found = load(folder.path(), "s").unwrap().unwrap();
     assert_eq!((found.left_out("all"), found.left_out("some")), (0.0, 1.5));
     let page = tables::methods(&found);
     assert!(page.contains("- `some`: 1.5 images a trial were left out") && !page.contains("- `all`"), "{page}");

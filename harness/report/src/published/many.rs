@@ -21,7 +21,7 @@ const PLAUSIBLE: &str = "plausible, 95 %";
 /// Records that cannot be read.
 pub fn of_all_trials(table: &Table, loaded: &Loaded) -> Result<Vec<Option<Ours>>, LoadError> {
     let mut figures = vec![(None, Running::default()); table.cells.len()];
-    read_points(&loaded.folder, |trial, methods| {
+    read_points(&loaded.folder, &loaded.name, |trial, methods| {
         for (cell, (first, all)) in table.cells.iter().zip(&mut figures) {
             let label = cell.method.as_ref().unwrap_or(&table.method);
             let method = methods.iter().position(|method| *method.label == **label);

@@ -8,7 +8,6 @@ mod errors;
 mod tests;
 
 use calibench_records::description::Subject;
-use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
 use rayon::prelude::*;
 
@@ -51,7 +50,9 @@ pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
 pub fn sweep(loaded: &LoadedSweep, stem: &str) -> Result<Option<(String, Pictures)>, LoadError> {
     let read = |index: usize| -> Result<Option<boards::Cell>, LoadError> {
         let mut distances = boards::Distances::default();
-        let Some(found) = load_cell_with(&cell_folder(&loaded.folder, index), |row| distances.add(row))? else { return Ok(None) };
+        let Some(found) = load_cell_with(&loaded.folder, (&loaded.name, &loaded.sweep, index), |row| distances.add(row))? else {
+            return Ok(None);
+        };
         let values = loaded.sweep.values(index).iter().map(|value| value.text.clone()).collect();
         Ok(is_transfer(&found).then(|| boards::Cell { values, found, medians: distances.medians() }))
     };

@@ -7,7 +7,7 @@ use calibench_records::stored::Table;
 use tempfile::TempDir;
 
 use super::{boards, cases, decomposition, errors, is_transfer};
-use crate::load::adjustments::{Summaries, load, load_cell_with};
+use crate::load::adjustments::{Summaries, load, load_with};
 use crate::tests::small::new_table;
 
 const SETS: [&str; 2] = ["held", "split"];
@@ -67,7 +67,7 @@ fn run() -> TempDir {
 }
 
 fn found() -> Summaries {
-    load(run().path()).unwrap().unwrap()
+    load(run().path(), "s").unwrap().unwrap()
 }
 
 fn rows(text: &str) -> Vec<Vec<String>> {
@@ -121,7 +121,7 @@ fn points_of_every_trial_are_drawn() {
 fn a_sweep_has_medians_and_says_once_what_it_does_not_touch() {
     let folder = run();
     let mut distances = boards::Distances::default();
-    load_cell_with(folder.path(), |row| distances.add(row)).unwrap();
+    load_with(folder.path(), "s", |row| distances.add(row)).unwrap();
     let medians = distances.medians();
     assert_eq!(medians.iter().map(|(method, median)| (method.as_str(), *median)).collect::<Vec<_>>(), [("board", 3.0), ("none", 2.0)]);
     let cell = |views: &str, board: f64| {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use calibench_measure::Registry;
+use calibench_records::names::{cell_folder, cell_run};
 use calibench_records::results::{Group, Outcome, PointResult};
 use calibench_records::stored::{read_adjustments, read_points};
 use calibench_scenario::Scenario;
@@ -57,14 +58,14 @@ fn what_is_stored_is_what_the_run_gave() {
     let folder = parent.path().join(NAME);
     assert_eq!(files(&folder)["scenario.toml"], SCENARIO.as_bytes());
     let mut again = Vec::new();
-    let head = read_points(&folder, |trial, _| again.push(trial.points)).unwrap();
+    let head = read_points(&folder, NAME, |trial, _| again.push(trial.points)).unwrap();
     assert_eq!((head.run.scenario.as_str(), head.run.seed, head.run.revision.as_str()), (NAME, 3, "r1"));
     assert_eq!(head.methods.iter().map(|method| &*method.label).collect::<Vec<_>>(), ["pixel", "forstner:window=9"]);
     let run = trials(&scenario, 3);
     assert_eq!(again.len(), 1, "of later trials the adjustments alone are kept");
     assert_eq!(again[0].iter().map(written).collect::<Vec<_>>(), run[0].points.iter().map(written).collect::<Vec<_>>());
     let mut rows = Vec::new();
-    read_adjustments(&folder, |row| rows.push(row)).unwrap();
+    read_adjustments(&folder, NAME, |row| rows.push(row)).unwrap();
     for (number, trial) in run.iter().enumerate() {
         for calibrated in &trial.calibrations {
             let (method, set) = (["pixel", "forstner:window=9"][calibrated.method], ["c,x0,y0", "c"][calibrated.set]);
@@ -133,13 +134,15 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
     let folder = parent.path().join(NAME);
     let stored = files(&folder);
     assert_eq!(stored["scenario.toml"], text.as_bytes());
-    let points = |cell: &str| {
+    let points = |index: usize| {
         let mut found = Vec::new();
-        let head = read_points(&folder.join(cell), |trial, _| found.push(trial.points)).unwrap();
-        (head.run.scenario, found)
+        let name = cell_run(NAME, &plan.sweep.label(index));
+        read_points(&cell_folder(&folder, index), &name, |trial, _| found.push(trial.points)).unwrap();
+        found
     };
-    let ((first, a), (second, b)) = (points("cell-0001"), points("cell-0002"));
-    assert!(first.starts_with("small/wall@") && first != second, "{first} {second}");
+    let (a, b) = (points(0), points(1));
+    let other = read_points(&cell_folder(&folder, 1), &cell_run(NAME, &plan.sweep.label(0)), |_, _| ()).unwrap_err().to_string();
+    assert!(other.contains("expected those of `small/wall@"), "{other}");
     assert_eq!(a, b, "the floor concerns the adjustment, the points are the same");
     assert_ne!(stored["cell-0001/calibrations.csv.gz"], stored["cell-0002/calibrations.csv.gz"]);
 }
