@@ -1,15 +1,16 @@
 //! A sweep of a calibrated scenario: how the reduction factor depends on what is swept.
 
+use calibench_records::description::Axis;
 use calibench_records::results::Group;
 use rayon::prelude::*;
 
-use super::pictures::floor::{Curve, floor};
+use super::pictures::floor::{Curve, Words, floor};
 use super::sweep_orientation;
 use crate::LoadError;
 use crate::canvas::Pictures;
 use crate::load::adjustments::{Summaries, Summary, load_cell};
 use crate::markdown::{MarkdownTable, fixed, with_half};
-use crate::sweep::LoadedSweep;
+use crate::sweep::{LoadedSweep, titled};
 
 /// What the paper prints in its Table 3, to be seen beside the curves.
 type Printed = [(String, f64)];
@@ -31,8 +32,10 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         }
     }
     let Some((_, first)) = cells.first() else { return Ok(None) };
-    let axis = loaded.sweep.axes[0].name.clone();
-    let mut header = vec![format!("`{axis}`"), "sigma0 of pixel, px".to_owned()];
+    let swept = &loaded.sweep.axes[0];
+    let axis = swept.name.clone();
+    let [reference, set] = [&first.methods, &first.sets].map(|names| names.first().map_or("", String::as_str));
+    let mut header = vec![format!("`{axis}`"), format!("sigma0 of {reference}, px")];
     let methods: Vec<String> = first.methods.iter().skip(1).cloned().collect();
     for method in &methods {
         header.extend([format!("`{method}`, reported"), format!("`{method}`, true errors")]);
@@ -61,16 +64,15 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         }
         rows.row(row);
     }
-    let picture = floor(&curves, &format!("{axis}: standard deviation per axis of the common error, px"), printed);
-    let caption = "The reduction factor over the noise floor";
+    let (title, x, caption) = words(swept);
+    let parameters = set.split(',').collect::<Vec<_>>().join(", ");
+    let picture = floor(&curves, &Words { title: &title, x: &x, reference, parameters: &parameters }, printed);
     let file = format!("{stem}.png");
     let with_names: Vec<(String, &Summaries)> = cells.iter().map(|(value, found)| (value.text.clone(), found)).collect();
     let mut text = sweep_orientation::table(&axis, &with_names);
     if !methods.is_empty() {
         text.push_str(&format!(
-            "Reduction factors against `{}`, mean over the parameters of `{}`, ± half their 95 % interval over {} trials.\n\n{}\n",
-            first.methods.first().map_or("", String::as_str),
-            first.sets.first().map_or("", String::as_str),
+            "Reduction factors against `{reference}`, mean over the parameters of `{set}`, ± half their 95 % interval over {} trials.\n\n{}\n",
             first.trials,
             rows.render()
         ));
@@ -79,6 +81,18 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         text.push_str(&format!("![{caption}]({file})\n\n"));
     }
     Ok(Some((text, picture.map(|picture| (file, picture)).into_iter().collect())))
+}
+
+/// The key of the error that all methods share.
+const FLOOR: &str = "calibration.floor_px";
+
+/// Title, what is swept and caption of the picture.
+fn words(axis: &Axis) -> (String, String, String) {
+    if axis.path == FLOOR {
+        let x = format!("{}: standard deviation per axis of the common error, px", axis.name);
+        return ("Reduction factor over the error that all methods share".into(), x, "The reduction factor over the noise floor".into());
+    }
+    (format!("Reduction factor over {}", axis.name), titled(axis), format!("The reduction factor over `{}`", axis.name))
 }
 
 fn averaged(found: &Summaries, method: &str, of: impl Fn(&Summary) -> Option<(f64, f64)>) -> Option<(f64, f64)> {
@@ -96,4 +110,37 @@ fn truth(found: &Summaries, method: &str) -> Option<(f64, f64)> {
         let (ratio, half) = summary.errors.ratio()?;
         Some((ratio, half.unwrap_or(0.0)))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(path: &str) -> Axis {
+        Axis { path: path.into(), name: path.rsplit('.').next().unwrap().into(), values: Vec::new(), log: false }
+    }
+
+    /// Only the floor is an error that all methods share.
+    #[test]
+    fn a_picture_says_what_is_swept() {
+        let (title, x, caption) = words(&axis("calibration.floor_px"));
+        assert!(title.contains("all methods share") && x.contains("common error") && caption.contains("noise floor"));
+        for (path, expected) in
+            [("optics.blur", "blur, px"), ("calibration.survey_sigma", "calibration.survey_sigma"), ("sensor.grey_noise", "noise")]
+        {
+            let (title, x, caption) = words(&axis(path));
+            assert!(x.contains(expected), "{path}: {x}");
+            for text in [&title, &x, &caption] {
+                assert!(!text.contains("common") && !text.contains("share") && !text.contains("floor"), "{path}: {text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_names_its_own_method_and_parameters() {
+        let words = Words { title: "over blur", x: "blur, px", reference: "centroid", parameters: "c, x0, y0, k1, k2, p1, p2" };
+        assert_eq!(words.factor(), "reduction factor against centroid, mean over c, x0, y0, k1, k2, p1, p2; bars: 95 %");
+        let curves = [Curve { method: "m".into(), name: "m".into(), points: vec![(0.5, 0.75, 0.125), (1.0, 0.5, 0.25)] }];
+        assert!(floor(&curves, &words, &[]).is_some());
+    }
 }

@@ -15,8 +15,28 @@ pub struct Curve {
     pub points: Vec<(f64, f64, f64)>,
 }
 
-/// Curves of reduction factors over `x`; `printed` is the paper's, for a line.
-pub fn floor(curves: &[Curve], x: &str, printed: &[(String, f64)]) -> Option<Canvas> {
+/// What the picture says of itself.
+pub struct Words<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// What is swept, with its unit.
+    pub x: &'a str,
+    /// The method that the factors are against.
+    pub reference: &'a str,
+    /// The parameters over which they are means.
+    pub parameters: &'a str,
+}
+
+impl Words<'_> {
+    /// What is upwards.
+    pub fn factor(&self) -> String {
+        format!("reduction factor against {}, mean over {}; bars: 95 %", self.reference, self.parameters)
+    }
+}
+
+/// Curves of reduction factors; `printed` is the paper's, for a line.
+pub fn floor(curves: &[Curve], words: &Words<'_>, printed: &[(String, f64)]) -> Option<Canvas> {
+    let x = words.x;
     let all = || curves.iter().flat_map(|curve| &curve.points);
     let widest = all().map(|p| p.0).fold(0.0, f64::max);
     if widest <= 0.0 {
@@ -25,10 +45,10 @@ pub fn floor(curves: &[Curve], x: &str, printed: &[(String, f64)]) -> Option<Can
     let highest = all().map(|p| p.1 + p.2).fold(1.0, f64::max);
     let axes = Axes { at: [70, 70, 720, 400], x: [0.0, widest * 1.03], y: [0.0, highest * 1.08] };
     let mut canvas = Canvas::new(830, 550 + 24 * curves.len() as u32);
-    canvas.text("Reduction factor over the error that all methods share", 20, (70, 22));
+    canvas.text(words.title, 20, (70, 22));
     let grey = RGBColor(120, 120, 120);
     canvas.paint(|area| {
-        axes.vertical(area, "reduction factor against pixel, mean over c, x0, y0, k1; bars: 95 %");
+        axes.vertical(area, &words.factor());
         axes.horizontal(area, x);
         for (i, (name, value)) in printed.iter().enumerate() {
             axes.level(area, *value, grey);
