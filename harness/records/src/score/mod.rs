@@ -55,6 +55,11 @@ impl Pooled {
         Some((squares * trials / (trials - 1.0)).sqrt() / self.count)
     }
 
+    /// The standard deviation of the mean of a single trial; `None` of fewer than two trials.
+    pub fn single(&self) -> Option<f64> {
+        self.standard_error().map(|error| error * (self.trials as f64).sqrt())
+    }
+
     /// The two-sided interval (lower and upper end) of the mean at `level` (0.95), by Student's t; `None` of fewer than two trials.
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         let (mean, error) = (self.mean()?, self.standard_error()?);

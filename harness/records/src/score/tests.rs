@@ -110,6 +110,7 @@ fn trials_of_unlike_size_scatter_about_their_share_of_the_mean() {
 #[test]
 fn two_trials_are_enough_for_a_standard_error() {
     close(squares(&[1.0, 4.0]).standard_error().unwrap(), 1.5);
+    close(squares(&[1.0, 4.0]).single().unwrap(), 4.5_f64.sqrt());
 }
 
 /// Mean 5, standard error sqrt(32 / 7 / 8), t(0.975, 7) = 2.364624: the root of the mean and of both ends.

@@ -11,7 +11,7 @@ use crate::load::{LoadError, Loaded};
 use crate::markdown::{MarkdownTable, fixed};
 
 /// Within so many standard deviations of their mean lie 95 % of single runs, if these are normal.
-const SINGLE: f64 = 1.959_964;
+pub const SINGLE: f64 = 1.959_964;
 /// The heading of what plausible experiments say.
 const PLAUSIBLE: &str = "plausible, 95 %";
 

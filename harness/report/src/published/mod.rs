@@ -103,7 +103,7 @@ pub struct Cell {
     /// What is wrong in print, and what it must have been.
     #[serde(default)]
     pub misprint: Option<String>,
-    /// The method by its label, where it is not the table's: for figures of adjustments.
+    /// The method by its label, where it is not the table's.
     #[serde(default)]
     pub method: Option<String>,
     /// The parameter of the interior orientation, for figures of adjustments; `c` by default.
