@@ -8,7 +8,7 @@ use calibench_calibrate::usual_limit_px;
 use calibench_exchange::{LostRow, LostRows, PointFile};
 use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
 use calibench_model::camera::CameraModel;
-use calibench_photographs::{Asked, Finder, MeasuredBoards, Reader, measured_boards, method_info};
+use calibench_photographs::{Finder, MeasuredBoards, Reader, measured_boards, method_info};
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
 use calibench_report::judgement::{in_use, section, verdict};
 use numpy::PyArray1;
@@ -245,7 +245,7 @@ fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Op
         let finder = Finder::new(pictured).map_err(input)?;
         let texts = methods.unwrap_or_else(|| usual_methods(finder.kind(), in_use));
         let methods = methods_of_boards(py, here, &texts, finder.kind())?;
-        let reader = Reader::of(photos, Asked { one_camera: true, ..Asked::default() }).map_err(input)?;
+        let reader = Reader::of(photos, calibench_photographs::Asked { one_camera: true, ..Default::default() }).map_err(input)?;
         reader.notes().iter().try_for_each(|note| doubt(py, note))?;
         let measured = interruptible(py, || measured_boards(&reader, &finder, &methods, &|| ()))?;
         let MeasuredBoards { trial, size, doubts } = measured.map_err(input)?;
