@@ -85,8 +85,10 @@ fn confirmed(count: usize) -> Result<bool, Failure> {
     if !std::io::stdin().is_terminal() {
         return Err(Failure::input("bless asks before it writes: answer on a terminal, or use --yes after looking"));
     }
-    eprint!("accept {count} baseline{} as above? [y/N] ", if count == 1 { "" } else { "s" });
-    std::io::stderr().flush()?;
+    // Who was not asked has not answered.
+    write!(std::io::stderr(), "accept {count} baseline{} as above? [y/N] ", if count == 1 { "" } else { "s" }).map_err(|error| {
+        Failure::input(format!("standard error: {error}; bless asks there before it writes, or use --yes after looking"))
+    })?;
     let mut answer = String::new();
     std::io::stdin().lock().read_line(&mut answer)?;
     Ok(matches!(answer.trim(), "y" | "Y" | "yes"))

@@ -1,5 +1,8 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+// These macros panic where nothing more can be written: `say!` and `deliver` do not.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 #[macro_use]
 mod say;
 
@@ -184,7 +187,7 @@ pub fn exit_code(toolbox: &Toolbox, words: impl IntoIterator<Item: Into<OsString
         Err(Failure::Gate) => 1,
         Err(Failure::Doubt) => 3,
         Err(Failure::Picture(picture)) => {
-            eprintln!("error: {picture}");
+            say::plain(format_args!("error: {picture}\n"));
             2
         }
         Err(Failure::Input(message)) => {
@@ -195,6 +198,8 @@ pub fn exit_code(toolbox: &Toolbox, words: impl IntoIterator<Item: Into<OsString
 }
 
 fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
+    // Names of files mean nothing in a folder that is gone.
+    calibench_project::here()?;
     let context = context::Context::new(toolbox, arguments.quiet, arguments.root, arguments.plugins);
     match arguments.command {
         Command::List { what } => list::list(&context, what),

@@ -36,7 +36,7 @@ pub struct Man {
 
 impl Man {
     pub fn run(&self, command: Command) -> Result<(), Failure> {
-        let folder = output::folder("-o", &self.output, &Inputs::default())?;
+        let folder = output::folder("-o", &self.output, &Inputs::default(), ("man", None))?;
         let mut command = command.disable_help_subcommand(true);
         // Names every command by those above it.
         command.build();

@@ -14,12 +14,12 @@ pub fn apart(path: &Path, inputs: &Inputs) -> Result<(), Failure> {
     inputs.lost_with(path).map_or(Ok(()), |input| Err(is_input("", path, input)))
 }
 
-/// The folder `path` that `option` names: new, empty, or one that calibench wrote; and none that holds an input.
-pub fn folder(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFolder, Failure> {
+/// The folder `path` that `option` of a command, for a project if there is one, names: new, empty, or one that the command wrote; and none that holds an input.
+pub fn folder(option: &str, path: &Path, inputs: &Inputs, (command, project): (&str, Option<&Path>)) -> Result<OutputFolder, Failure> {
     if let Some(input) = inputs.lost_with(path) {
         return Err(is_input(option, path, input));
     }
-    OutputFolder::open(path).map_err(|error| refused(option, &error))
+    OutputFolder::open(path).and_then(|folder| folder.owned_by(command, project)).map_err(|error| refused(option, &error))
 }
 
 /// A CSV file, if one is named.

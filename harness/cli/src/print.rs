@@ -51,7 +51,8 @@ impl Print {
         };
         let stem = scenario.name.replace('/', "-");
         let options = PrintOptions { name: stem, mm_per_unit: subject.unit.mm(), paper };
-        let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?;
+        let project = context.folder()?;
+        let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario), ("print", project.as_deref()))?;
         let target = subject.sheet.map(|board| kalibr_target(&board, 1e-3 * subject.unit.mm()));
         output.replace(|folder| {
             write_sheets(folder, &subject.field, &options)?;

@@ -70,7 +70,8 @@ impl Render {
             let message = format!("--trials: nothing is random in `{}`, every trial would be the same; expected 1", scenario.name);
             return Err(Failure::input(message));
         }
-        let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?;
+        let project = context.folder()?;
+        let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario), ("render", project.as_deref()))?;
         let seed = self.seed.unwrap_or(scenario.seed);
         let key = |trial| Key { seed, scenario: &scenario.name, trial, view: "", target: "" };
         let trials = self.trials.map_or(self.trial..self.trial + 1, |trials| 0..trials);

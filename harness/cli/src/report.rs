@@ -1,6 +1,6 @@
 //! `calibench report`.
 
-use calibench_report::{FamilyPages, ONE_FILE, Written, family_pages, one_file, write as write_family};
+use calibench_report::{FamilyPages, ONE_FILE, Written, family_pages, fill, one_file};
 use clap::Args;
 
 use super::context::Context;
@@ -29,25 +29,23 @@ impl Report {
             let pages = |(family, scenarios): &(&String, &Vec<String>)| family_pages(&places, family, scenarios);
             let pages: Vec<FamilyPages> = side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), pages)?;
             let folder = places.reports.join("html");
-            std::fs::create_dir_all(&folder)?;
+            std::fs::create_dir_all(&folder).map_err(|error| calibench_exchange::at(&folder, &error))?;
             calibench_exchange::folder::write_beside(&folder, ONE_FILE, one_file(&pages).as_bytes())?;
             if !context.quiet {
                 say!("{}", folder.join(ONE_FILE).display());
             }
             return Ok(());
         }
-        let write = |(family, scenarios): &(&String, &Vec<String>)| {
-            let written = write_family(&places, family, scenarios)?;
-            match written {
+        let make = |(family, scenarios): &(&String, &Vec<String>)| fill(&places, family, scenarios);
+        for made in side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), make)? {
+            match made.put()? {
                 Written::New(page) if !context.quiet => say!("{}", page.display()),
                 Written::Kept(page) if !context.quiet => {
                     say!("{}: kept as it is, nothing of it can be measured here", page.display());
                 }
                 _ => {}
             }
-            Ok::<_, Failure>(())
-        };
-        side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), write)?;
+        }
         Ok(calibench_report::write_index(&places.reports)?)
     }
 }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibench_exchange::at;
+
 use super::Check;
 use super::baseline::{baseline_path, figures_path, images_path, read_baseline};
 use super::baseline_file::{BaselineError, is_baseline};

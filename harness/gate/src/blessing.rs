@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibench_exchange::at;
 use calibench_exchange::atomic::write_atomically;
 
 use super::accepted_worse::worse_than;
@@ -124,7 +125,7 @@ impl Baselines {
     /// # Errors
     /// What the file system refuses.
     pub fn bless(mut self, changes: &[Change<'_>], gone: &[PathBuf], written: &mut dyn FnMut(&Path)) -> Result<(), BlessError> {
-        std::fs::create_dir_all(&self.folder)?;
+        std::fs::create_dir_all(&self.folder).map_err(|error| at(&self.folder, &error))?;
         let ceilings = self.folder.join(CEILINGS);
         // A check asks for the file, which is written by hand: who begins has none yet.
         if self.is_new() && !ceilings.exists() {
@@ -136,7 +137,10 @@ impl Baselines {
         }
         for path in gone {
             self.index.forget(path);
-            std::fs::remove_file(path).or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
+            match std::fs::remove_file(path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(at(path, &error).into()),
+                _ => {}
+            }
         }
         Ok(self.index.write(&self.folder)?)
     }

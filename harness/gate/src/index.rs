@@ -1,7 +1,6 @@
 //! The list of what is blessed, `blessed.toml` beside the baselines: without it, a deleted baseline would look like one that never was.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +51,7 @@ impl Index {
     /// A list that is not there or means nothing.
     pub fn read(folder: &Path) -> Result<Self, IndexError> {
         let path = folder.join(INDEX);
-        match fs::read_to_string(&path) {
+        match calibench_exchange::bounded::text(&path) {
             Ok(text) => {
                 toml::from_str(&text).map_err(|error: toml::de::Error| IndexError::Text { path, problem: error.message().to_owned() })
             }
@@ -107,6 +106,8 @@ fn name(path: &Path) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

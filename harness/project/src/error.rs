@@ -34,9 +34,9 @@ pub enum ProjectError {
     /// What was asked for cannot be, in words.
     #[error("{0}")]
     Asked(String),
-    /// The current folder.
-    #[error(transparent)]
-    Io(#[from] io::Error),
+    /// The current folder, which may be gone.
+    #[error("the current folder: {0}; go to one that is there")]
+    Here(io::Error),
 }
 
 impl From<CatalogueError> for ProjectError {

@@ -10,7 +10,7 @@ mod toolbox;
 
 pub use error::ProjectError;
 pub use methods::Pictured;
-pub use project::Project;
+pub use project::{Project, here};
 pub use scenarios::origin;
 pub use toolbox::Toolbox;
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use calibench_exchange::folder::is_project;
 use calibench_measure::Registry;
 use calibench_plugins::{Launcher, load};
 use calibench_report::Places;
@@ -36,18 +37,25 @@ impl<'a> Project<'a> {
     }
 }
 
+/// The current folder.
+///
+/// # Errors
+/// It is gone, or cannot be named.
+pub fn here() -> Result<PathBuf, ProjectError> {
+    std::env::current_dir().map_err(ProjectError::Here)
+}
+
 impl Project<'_> {
     /// Its folder: named, or the nearest one upwards that holds scenarios/ and reference/, if there is one.
     ///
     /// # Errors
     /// A named folder that is no project; a current folder that cannot be read.
     pub fn folder(&self) -> Result<Option<PathBuf>, ProjectError> {
-        let is_root = |folder: &Path| folder.join("scenarios").is_dir() && folder.join("reference").is_dir();
         if let Some(root) = &self.root {
-            return if is_root(root) { Ok(Some(root.clone())) } else { Err(ProjectError::NoProject(root.clone())) };
+            return if is_project(root) { Ok(Some(root.clone())) } else { Err(ProjectError::NoProject(root.clone())) };
         }
-        let here = std::env::current_dir()?;
-        Ok(here.ancestors().find(|folder| is_root(folder)).map(Path::to_owned))
+        let here = here()?;
+        Ok(here.ancestors().find(|folder| is_project(folder)).map(Path::to_owned))
     }
 
     /// Its folder, where there must be one.
@@ -60,10 +68,7 @@ impl Project<'_> {
 
     /// Its folder, or the current one outside of a project: there records and reports of one's own files are.
     fn base(&self) -> Result<PathBuf, ProjectError> {
-        Ok(match self.folder()? {
-            Some(root) => root,
-            None => std::env::current_dir()?,
-        })
+        self.folder()?.map_or_else(here, Ok)
     }
 
     /// All methods: those of this build, and the plug-ins of the folder that the user named, or of the project.

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_report::write as write_family;
-use calibench_report::{Written, write_index};
+use calibench_report::{Filled, Written, fill, write_index};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -18,8 +17,12 @@ pub fn report(py: Python<'_>, papers: Vec<String>, root: Option<PathBuf>) -> PyR
     with_project(root, |here| {
         let (places, families) = (here.places().map_err(project)?, here.families(&papers).map_err(project)?);
         let families: Vec<(&String, &Vec<String>)> = families.iter().collect();
-        let write = |(family, scenarios): &(&String, &Vec<String>)| write_family(&places, family, scenarios);
-        let written = released(py, || families.par_iter().map(write).collect::<Result<Vec<_>, _>>())?.map_err(input)?;
+        let make = |(family, scenarios): &(&String, &Vec<String>)| fill(&places, family, scenarios);
+        let write = || {
+            let made = families.par_iter().map(make).collect::<Result<Vec<_>, _>>()?;
+            made.into_iter().map(Filled::put).collect::<Result<Vec<_>, _>>()
+        };
+        let written = released(py, write)?.map_err(input)?;
         write_index(&places.reports)?;
         let mut pages = Vec::new();
         for one in written {

@@ -4,6 +4,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
+use calibench_exchange::at;
+
 use crate::places::PAGE;
 
 /// Writes the page that lists the reports that are there: each with the first paragraph of its page, which is its answer.
@@ -12,8 +14,8 @@ use crate::places::PAGE;
 /// What the file system refuses.
 pub fn write_index(reports: &Path) -> io::Result<()> {
     let mut names: Vec<String> = Vec::new();
-    for entry in fs::read_dir(reports).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", reports.display())))? {
-        let entry = entry?;
+    for entry in fs::read_dir(reports).map_err(|error| at(reports, &error))? {
+        let entry = entry.map_err(|error| at(reports, &error))?;
         if entry.path().join(PAGE).is_file() {
             names.extend(entry.file_name().into_string());
         }
@@ -21,7 +23,8 @@ pub fn write_index(reports: &Path) -> io::Result<()> {
     names.sort();
     let mut lines = String::new();
     for name in &names {
-        let page = fs::read_to_string(reports.join(name).join(PAGE))?;
+        let path = reports.join(name).join(PAGE);
+        let page = fs::read_to_string(&path).map_err(|error| at(&path, &error))?;
         lines.push_str(&format!("- **[{name}]({name}/{PAGE})**: {}\n", first_paragraph(&page, name)));
     }
     let text = format!(

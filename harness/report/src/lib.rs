@@ -52,7 +52,7 @@ pub use camera_card::camera_card;
 pub use canvas::Canvas;
 pub use composed::Composed;
 pub use corners::{Corner, Pictured};
-pub use families::{compose, write};
+pub use families::{Filled, compose, fill};
 pub use field::Field;
 pub use html::{HELPERS, POLICY, STYLE, escaped, in_script};
 pub use hull::Hull;

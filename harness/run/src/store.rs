@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::{NewFile, NewFolder, OutputFolder};
+use calibench_exchange::{NewFile, NewFolder, OutputFolder, at};
 use calibench_measure::Configured;
 use calibench_measure::registry::told;
 use calibench_model::Told;
@@ -30,13 +30,14 @@ fn keep_camera(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> 
     let Subject::Views(views) = &scenario.subject else { return Ok(()) };
     let named = views.camera_file.as_deref().and_then(|path| Some((path, path.file_name()?.to_str()?)));
     let Some((path, name)) = named else { return Ok(()) };
-    let bytes = fs::read(path).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path.display())))?;
+    let bytes = fs::read(path).map_err(|error| at(path, &error))?;
     Ok(folder.folder(KEPT)?.write(name, |file| file.write_all(&bytes))?)
 }
 
 /// The path of a scenario's file as records keep it.
 fn kept(origin: Option<&Path>) -> io::Result<Option<String>> {
-    origin.map(|file| Ok(file.canonicalize()?.to_string_lossy().into_owned())).transpose()
+    let whole = |file: &Path| file.canonicalize().map_err(|error| at(file, &error));
+    origin.map(|file| Ok(whole(file)?.to_string_lossy().into_owned())).transpose()
 }
 
 /// The folder of a scenario's records.
@@ -73,7 +74,9 @@ impl RecordsFolder {
 
     fn of(records: &Path, name: &str, origin: Option<String>) -> io::Result<Self> {
         let path = records.join(name);
-        let output = OutputFolder::open(&path)?;
+        // Of the project's own records alone is known whose they are: parts are put together elsewhere.
+        let project = records.file_name().filter(|name| *name == "records").and_then(|_| records.parent());
+        let output = OutputFolder::open(&path)?.owned_by("run", project)?;
         let there = match fs::read_to_string(path.join(ORIGIN)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             other => Some(other?.trim_end().to_owned()),

@@ -130,7 +130,7 @@ impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
         let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
-        let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
+        let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("calibrate", None))).transpose()?;
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, &inputs)).transpose()?;
         let outputs = Outputs { camera, scene, report };

@@ -131,7 +131,9 @@ impl Convert {
     fn cameras_file(&self, inputs: &Inputs) -> Result<CamerasFile, Failure> {
         Ok(match &self.output {
             None => CamerasFile::Standard,
-            Some(path) if self.all && !output::is_camera_name(path) => CamerasFile::Folder(output::folder("-o", path, inputs)?),
+            Some(path) if self.all && !output::is_camera_name(path) => {
+                CamerasFile::Folder(output::folder("-o", path, inputs, ("convert", None))?)
+            }
             Some(path) => CamerasFile::File(output::camera("-o", path, true, inputs)?),
         })
     }

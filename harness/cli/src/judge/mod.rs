@@ -93,7 +93,7 @@ impl Judge {
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
         let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
-        let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
+        let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("judge", None))).transpose()?;
         let (material, doubts, reading) = self.material(context)?;
         let size = material.size;
         let published = self.camera.as_deref().or(self.published.as_deref());

@@ -68,7 +68,7 @@ impl Orient {
         let seen = self.seen(&read_measured(&self.points)?)?;
         let pair = self.orient([&left, &right], seen)?;
         if !context.quiet {
-            eprint!("{}", escape::message(&orientation::summary(&pair, [&self.left, &self.right])));
+            crate::say::plain(escape::message(&orientation::summary(&pair, [&self.left, &self.right])));
         }
         orientation::warnings(&pair).iter().for_each(|warning| say!("warning: {warning}"));
         deliver(output.as_ref(), |file| pair.write_points(file))?;

@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibench_exchange::at;
 use calibench_exchange::folder::intact;
 use calibench_records::names::{ORIGIN, PART, cell_name};
 use calibench_records::parts::Manifest;
@@ -64,13 +65,13 @@ fn is_table(name: &str) -> bool {
 pub(super) fn gather(folders: &[PathBuf]) -> Result<Vec<Vec<Found>>, MergeError> {
     let mut places = BTreeMap::new();
     for folder in folders {
-        let below = places_below(folder).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", folder.display())))?;
+        let below = places_below(folder)?;
         if below.is_empty() {
             return Err(MergeError::NoPart(folder.clone()));
         }
         for place in below {
             // One that is named twice is one.
-            places.entry(place.canonicalize()?).or_insert(place);
+            places.entry(place.canonicalize().map_err(|error| at(&place, &error))?).or_insert(place);
         }
     }
     let mut runs: BTreeMap<String, Vec<(PathBuf, Manifest)>> = BTreeMap::new();
@@ -87,10 +88,11 @@ fn places_below(folder: &Path) -> io::Result<Vec<PathBuf>> {
         return Ok(vec![folder.to_owned()]);
     }
     let mut found = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
+    let named = |error: io::Error| at(folder, &error);
+    for entry in fs::read_dir(folder).map_err(named)? {
+        let entry = entry.map_err(named)?;
         // What is being written has a name with a dot. Links are not followed.
-        if entry.file_type()?.is_dir() && !entry.file_name().to_string_lossy().starts_with('.') {
+        if entry.file_type().map_err(named)?.is_dir() && !entry.file_name().to_string_lossy().starts_with('.') {
             found.extend(places_below(&entry.path())?);
         }
     }

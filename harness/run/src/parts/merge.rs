@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::NewFolder;
+use calibench_exchange::{NewFolder, at};
 use calibench_model::told::{Told, notes};
 use calibench_records::compressor::Compressor;
 use calibench_records::description::{read as read_description, write as write_description};
@@ -94,8 +94,8 @@ fn by_method(told: &[ToldBy]) -> impl Iterator<Item = (&str, Told)> {
 /// Writes the description that all parts have in common, with what methods told.
 fn describe(parts: &[Found], told: &[ToldBy], folder: &NewFolder) -> io::Result<()> {
     let path = parts[0].folder.join(DESCRIPTION);
-    let mut description =
-        read_description(BufReader::new(File::open(&path)?)).map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
+    let mut description = read_description(BufReader::new(File::open(&path).map_err(|error| at(&path, &error))?))
+        .map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
     description.notes.extend(told_notes(by_method(told)));
     folder.write(DESCRIPTION, |file| write_description(file, &description))
 }
@@ -103,7 +103,9 @@ fn describe(parts: &[Found], told: &[ToldBy], folder: &NewFolder) -> io::Result<
 /// Copies files of `part`, under their names.
 fn copy<'n>(part: &Found, names: impl Iterator<Item = &'n str>, folder: &NewFolder) -> io::Result<()> {
     for name in names {
-        folder.write(name, |output| io::copy(&mut File::open(part.folder.join(name))?, output).map(drop))?;
+        let path = part.folder.join(name);
+        let mut input = File::open(&path).map_err(|error| at(&path, &error))?;
+        folder.write(name, |output| io::copy(&mut input, output).map(drop))?;
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::NewFolder;
+use calibench_exchange::{NewFolder, at};
 use calibench_store::{Key, Store};
 
 /// Puts the stored images into `folder`; whether there are any.
@@ -40,7 +40,7 @@ pub fn keep(store: &Store, key: Key, folder: &NewFolder) -> io::Result<()> {
     let mut entry = store.create(key)?;
     for path in images {
         let Some(name) = path.strip_prefix(folder.path()).ok().and_then(Path::to_str) else { continue };
-        for part in [name.as_bytes(), &fs::read(&path)?] {
+        for part in [name.as_bytes(), &fs::read(&path).map_err(|error| at(&path, &error))?] {
             entry.write_all(&(part.len() as u64).to_le_bytes())?;
             entry.write_all(part)?;
         }
@@ -50,8 +50,8 @@ pub fn keep(store: &Store, key: Key, folder: &NewFolder) -> io::Result<()> {
 
 /// The images below `folder`.
 fn list(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
+    for entry in fs::read_dir(folder).map_err(|error| at(folder, &error))? {
+        let path = entry.map_err(|error| at(folder, &error))?.path();
         if path.is_dir() {
             list(&path, found)?;
         } else if path.extension().is_some_and(|extension| extension == "png") {

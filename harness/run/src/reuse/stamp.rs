@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 
+use calibench_exchange::at;
 use calibench_exchange::folder::{MANIFEST, digest, intact};
 use calibench_scenario::Subject;
 use calibench_store::Key;
@@ -71,7 +72,7 @@ impl<'a> Stamp<'a> {
         let put = || {
             let mut entry = self.reuse.store.create(self.key)?;
             entry.write_all(&measured.to_le_bytes())?;
-            entry.write_all(&fs::read(folder.join(MANIFEST))?)?;
+            entry.write_all(&fs::read(folder.join(MANIFEST)).map_err(|error| at(folder, &error))?)?;
             entry.finish()
         };
         self.reuse.tally.unless_refused(put());
