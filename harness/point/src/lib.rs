@@ -7,7 +7,7 @@ mod shown;
 
 pub use page::{Content, Loaded, write_page};
 pub use predict::{Predicted, predict};
-pub use serve::{Served, Server};
+pub use serve::{Kept, Served, Server};
 pub use shown::{Shown, Stretch};
 
 /// The example of the README.

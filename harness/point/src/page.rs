@@ -17,10 +17,11 @@ use serde_json::json;
 use crate::shown::{Shown, TILE};
 
 /// The script, in the order in which its parts build on each other.
-const SCRIPT: [&str; 12] = [
+const SCRIPT: [&str; 13] = [
     HELPERS,
     include_str!("assets/base.js"),
     include_str!("assets/csv.js"),
+    include_str!("assets/keep.js"),
     include_str!("assets/store.js"),
     include_str!("assets/tiles.js"),
     include_str!("assets/measured.js"),

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{ControlRow, Inputs, OutputFile, read_control, read_points};
+use calibench_exchange::points::parse_points;
+use calibench_exchange::{ControlRow, Inputs, OutputFile, bounded, read_control};
 use calibench_model::TargetKind;
 use calibench_photographs::PhotographsError;
 use calibench_photographs::names::{names, once};
@@ -22,6 +23,8 @@ mod serve;
 
 /// Minutes after which a server ends.
 const IDLE: f64 = 30.0;
+/// What keeps points beside the photographs.
+const POINTED: &str = "pointed.csv";
 /// A page that is larger takes long to open, MB.
 const LARGE: f64 = 150.0;
 
@@ -51,6 +54,9 @@ pub struct Point {
     /// With --serve: a camera for the predictions, a file of any known format; of several cameras IMAGES=FILE, as in left*=left.yaml
     #[arg(long = "camera", value_name = "[IMAGES=]FILE")]
     cameras: Vec<ImagesFile>,
+    /// With --serve: the table that keeps what is pointed at; what is in it is shown, and changes are merged into it by target [default: pointed.csv beside the first photograph]
+    #[arg(long, value_name = "CSV")]
+    points: Option<PathBuf>,
     /// With --serve: end after so many minutes in which nobody used the page [default: 30]
     #[arg(long, value_name = "MINUTES", value_parser = minutes, allow_negative_numbers = true)]
     idle: Option<f64>,
@@ -63,7 +69,12 @@ fn minutes(text: &str) -> Result<f64, String> {
 impl Point {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         // clap does not say that an option needs another one where both exclude a third.
-        let given = [("-m", self.method.is_some()), ("--camera", !self.cameras.is_empty()), ("--idle", self.idle.is_some())];
+        let given = [
+            ("-m", self.method.is_some()),
+            ("--camera", !self.cameras.is_empty()),
+            ("--points", self.points.is_some()),
+            ("--idle", self.idle.is_some()),
+        ];
         if let Some((option, _)) = given.iter().find(|(_, given)| *given && !self.serve) {
             return Err(Failure::input(format!("{option}: is of the server; give --serve in place of -o")));
         }
@@ -77,7 +88,7 @@ impl Point {
         let photos: Vec<(String, &Path)> = names.into_iter().zip(self.photos.iter().map(PathBuf::as_path)).collect();
         match output {
             Some(output) => write(&output, &content, &photos, context.quiet),
-            None => self.serve(context, &content, photos, &control),
+            None => self.serve(context, &content, photos, &control, &inputs),
         }
     }
 
@@ -103,13 +114,14 @@ impl Point {
 
     fn content(&self, names: &[String], control: &[ControlRow]) -> Result<Content, Failure> {
         let loaded = |path: &PathBuf| {
-            let points = read_points(path)?;
+            let name = path.display().to_string();
+            let text = bounded::text(path).map_err(|error| Failure::input(format!("{name}: {error}")))?;
+            let points = parse_points(&name, text.as_bytes())?;
             let images: Vec<&str> = points.points.images().iter().collect();
             if let Some(first) = images.first().filter(|_| !images.iter().any(|image| is_named(names, image))) {
                 say!("{}: shows nothing: it is of other photographs, the first is `{first}`", path.display());
             }
-            let text = fs::read_to_string(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
-            Ok(Loaded { name: path.display().to_string(), text })
+            Ok(Loaded { name, text })
         };
         Ok(Content {
             targets: control.iter().map(|row| row.target.clone()).collect(),

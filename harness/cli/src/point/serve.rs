@@ -3,15 +3,16 @@
 use std::path::Path;
 use std::time::Duration;
 
-use calibench_exchange::ControlRow;
+use calibench_exchange::{ControlRow, Inputs};
 use calibench_model::camera::CameraModel;
-use calibench_point::{Content, Served, Server};
+use calibench_point::{Content, Kept, Served, Server};
 
-use super::{IDLE, Point};
+use super::{IDLE, POINTED, Point};
 use crate::camera_files::CameraFiles;
 use crate::context::{Context, Pictured};
 use crate::deliver::print;
 use crate::failure::Failure;
+use crate::output;
 
 impl Point {
     pub(super) fn serve(
@@ -20,6 +21,7 @@ impl Point {
         content: &Content,
         photos: Vec<(String, &Path)>,
         control: &[ControlRow],
+        inputs: &Inputs,
     ) -> Result<(), Failure> {
         let (asked, idle) = (self.method.as_deref().unwrap_or("forstner"), self.idle.unwrap_or(IDLE));
         let method = context.methods(&[asked.to_owned()], Pictured::Photographs)?.remove(0);
@@ -31,7 +33,13 @@ impl Point {
             return Err(Failure::input(format!("-m {}: measures other kinds of targets; give --kind", method.label)));
         }
         let names: Vec<String> = photos.iter().map(|(name, _)| name.clone()).collect();
-        let mut served = Served::new(content, photos, (&method, operator.as_ref()), self.kind, control)?;
+        let place = self.points.clone().unwrap_or_else(|| self.photos[0].with_file_name(POINTED));
+        let file = output::table("--points", Some(&place), inputs)?.ok_or_else(|| Failure::input("--points: expected a table"))?;
+        if !file.is_file() {
+            return Err(Failure::input(format!("--points {}: is no regular file, and is read again and replaced", place.display())));
+        }
+        let kept = Kept::open(file, names.clone(), self.kind).map_err(Failure::input)?;
+        let mut served = Served::new(content, photos, (&method, operator.as_ref()), self.kind, control, &kept)?;
         if !self.cameras.is_empty() {
             let cameras = CameraFiles::new(self.cameras.clone(), served.sizes().first().copied()).of(&names)?;
             for ((camera, size), name) in cameras.iter().zip(served.sizes()).zip(&names) {
@@ -49,6 +57,7 @@ impl Point {
             say!(
                 "open this address in a browser on this machine; whoever knows it sees the photographs. Ctrl-C ends it, or {idle} minutes without use"
             );
+            say!("points are kept in {}", place.display());
         }
         server.run(&served, Duration::from_secs_f64(idle * 60.0))?;
         if !context.quiet {

@@ -78,7 +78,7 @@ const moved = (event) => {
   drag.moved = true;
   pointer.down.set(event.pointerId, at);
   pointer.at = at;
-  if (drag.name === null || drag.name === undefined) return pan(dx, dy);
+  if (drag.name === null || drag.name === undefined || !here().has(drag.name)) return pan(dx, dy);
   const { x, y } = here().get(drag.name);
   // Shown as it goes, one change when it is let go.
   here().set(drag.name, { x: x + dx / viewNow().scale, y: y + dy / viewNow().scale });
@@ -92,7 +92,7 @@ const released = (event) => {
   pointer.drag = null;
   if (!drag) return;
   if (drag.moved) {
-    if (drag.name) {
+    if (drag.name && here().has(drag.name)) {
       const { x, y } = here().get(drag.name);
       here().set(drag.name, drag.before);
       place(drag.name, x, y);

@@ -164,9 +164,11 @@ const notes = () => {
     if (served.on) lines.push(`Each point is measured by ${content.method}.`, served.predicted[state.photo].how && `${served.predicted[state.photo].how}.`);
     if (measured.files.length) lines.push(`Shown: ${measured.files.join(", ")}.`);
     if (served.lost) lines.push("The server has ended: points stay here, save them.");
-    if (!kept.works) lines.push("This browser keeps nothing: save the points before the page is closed.");
+    if (kept.why) lines.push(`Points are not kept on the disk: ${kept.why}. Save them.`);
+    const nowhere = !kept.works && !served.on;
+    if (nowhere) lines.push("This browser keeps nothing: save the points before the page is closed.");
     how.textContent = lines.filter(Boolean).join(" ");
-    how.classList.toggle("problem", served.lost || !kept.works);
+    how.classList.toggle("problem", Boolean(served.lost || kept.why || nowhere));
   });
   return how;
 };

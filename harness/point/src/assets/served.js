@@ -13,7 +13,9 @@ const served = {
 
 const ask = async (what, body) => {
   try {
-    const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+    const text = JSON.stringify(body);
+    // Sent even where the page is left; browsers take no more than 64 kB of that.
+    const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: text, keepalive: text.length < 60000 });
     served.lost = false;
     return answer.ok ? await answer.json() : { status: "unavailable", reason: (await answer.text()).trim() };
   } catch {

@@ -1,4 +1,4 @@
-// What was pointed at, with its history, kept by the browser.
+// What was pointed at, with its history.
 
 const state = {
   photo: 0,
@@ -14,37 +14,6 @@ const state = {
   undone: [],
 };
 
-const KEY = `calibench-point-${content.key}`;
-
-/** Browsers may refuse to keep anything: the page works without. */
-const keep = whenQuiet(150, () => {
-  const { photo, target, factor } = state;
-  const points = state.points.map((named) => [...named].map(([name, { x, y }]) => [name, x, y]));
-  try {
-    localStorage.setItem(KEY, JSON.stringify({ photo, target, factor, points }));
-    kept.works = true;
-  } catch {
-    kept.works = false;
-  }
-});
-const kept = { works: true };
-
-const restore = () => {
-  let found = null;
-  try {
-    found = JSON.parse(localStorage.getItem(KEY));
-  } catch {
-    kept.works = false;
-  }
-  if (!found || !Array.isArray(found.points)) return;
-  found.points.slice(0, photos.length).forEach((rows, index) => {
-    for (const [name, x, y] of rows) if (typeof name === "string" && Number.isFinite(x) && Number.isFinite(y)) state.points[index].set(name, { x, y });
-  });
-  if (photos[found.photo]) state.photo = found.photo;
-  if (typeof found.target === "string") state.target = found.target;
-  if (found.factor > 0) state.factor = found.factor;
-};
-
 const here = () => state.points[state.photo];
 
 /** Called with the photograph and the name of each point that was set, moved or deleted. */
@@ -53,6 +22,7 @@ const told = [];
 const put = ({ photo, name }, place) => {
   if (place) state.points[photo].set(name, place);
   else state.points[photo].delete(name);
+  unkept[photo].set(name, place);
   told.forEach((listener) => listener(photo, name));
 };
 

@@ -1,12 +1,48 @@
 //! As much of HTTP as one page needs: one request a connection.
 
 use std::io::{self, BufRead, ErrorKind, Read, Write};
+use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 /// Bytes of a request before its body.
 const MOST_HEAD: u64 = 16 << 10;
 /// Bytes of a body: positions of ten thousand targets.
 const MOST_BODY: u64 = 1 << 20;
+
+/// A connection that must be done by a moment, however little comes or goes at a time.
+pub(super) struct Timed<'s> {
+    stream: &'s TcpStream,
+    until: Instant,
+}
+
+impl<'s> Timed<'s> {
+    pub(super) fn new(stream: &'s TcpStream, patience: Duration) -> Self {
+        Self { stream, until: Instant::now() + patience }
+    }
+
+    fn left(&self) -> io::Result<Option<Duration>> {
+        let left = self.until.saturating_duration_since(Instant::now());
+        if left.is_zero() { Err(ErrorKind::TimedOut.into()) } else { Ok(Some(left)) }
+    }
+}
+
+impl Read for Timed<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(self.left()?)?;
+        (&mut { self.stream }).read(buffer)
+    }
+}
+
+impl Write for Timed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(self.left()?)?;
+        (&mut { self.stream }).write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
 
 /// A request.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,13 +59,12 @@ impl Request {
     /// The next request; what is wrong with it as an answer.
     ///
     /// # Errors
-    /// A connection that ends early or is too slow.
-    pub(super) fn read(input: &mut impl BufRead, patience: Duration) -> io::Result<Result<Self, Answer>> {
-        let until = Instant::now() + patience;
+    /// A connection that ends early, and what its reader refuses.
+    pub(super) fn read(input: &mut impl BufRead) -> io::Result<Result<Self, Answer>> {
         let mut head = Vec::new();
         let mut limited = input.by_ref().take(MOST_HEAD);
         while !head.ends_with(b"\r\n\r\n") {
-            if limited.read_until(b'\n', &mut head)? == 0 || Instant::now() > until {
+            if limited.read_until(b'\n', &mut head)? == 0 {
                 let whole = limited.limit() == 0;
                 return if whole { Ok(Err(Answer::words(431, "the head is too long"))) } else { Err(ErrorKind::UnexpectedEof.into()) };
             }

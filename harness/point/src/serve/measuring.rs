@@ -12,6 +12,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::http::{Answer, Request};
+use super::kept::{Changes, Kept};
 use super::not_found;
 use crate::page::{Content, Pictured, served_page};
 use crate::predict::predict;
@@ -29,6 +30,7 @@ pub struct Served<'a> {
     kind: Option<TargetKind>,
     control: &'a [ControlRow],
     cameras: Option<Vec<Camera>>,
+    kept: &'a Kept,
     page: String,
     held: Mutex<Vec<(usize, Arc<Held>)>>,
 }
@@ -55,7 +57,8 @@ struct Known {
 }
 
 impl<'a> Served<'a> {
-    /// `photos` (what points call each, and its file) are read once, so that what is wrong with one is said before anything is pointed at; `method` measures.
+    /// `photos` (what points call each, and its file) are read once, so that what is wrong with one is said before anything is pointed at; `method` measures, and
+    /// `kept` holds what is pointed at.
     ///
     /// # Errors
     /// A photograph that cannot be read.
@@ -65,13 +68,14 @@ impl<'a> Served<'a> {
         (method, operator): (&'a Configured, &'a dyn Operator),
         kind: Option<TargetKind>,
         control: &'a [ControlRow],
+        kept: &'a Kept,
     ) -> Result<Self, PhotoError> {
         let read = |(name, path): &(String, &Path)| Ok(Pictured::new(name, &Shown::read(path)?.0));
         let pictured = photos.par_iter().map(read).collect::<Result<Vec<_>, PhotoError>>()?;
         let sizes = pictured.iter().map(Pictured::size).collect();
         let page = served_page(content, &pictured, &method.label);
         let held = Mutex::new(Vec::new());
-        Ok(Self { photos, sizes, operator, label: &method.label, kind, control, cameras: None, page, held })
+        Ok(Self { photos, sizes, operator, label: &method.label, kind, control, cameras: None, kept, page, held })
     }
 
     /// The sizes of the photographs.
@@ -86,17 +90,23 @@ impl<'a> Served<'a> {
         self
     }
 
-    /// The answer to a request for what is at `path`.
-    pub(super) fn answer(&self, request: &Request, path: &str) -> Answer {
-        match (request.method.as_str(), path) {
+    /// The answer to a request for what is at `path`, and whether somebody used the page for it: one that only asks what others changed comes by itself.
+    pub(super) fn answer(&self, request: &Request, path: &str) -> (Answer, bool) {
+        let mut used = true;
+        let answer = match (request.method.as_str(), path) {
+            ("POST", "points") => asked(request, |sent: Changes| {
+                used = !sent.changes.is_empty();
+                Some(self.kept.take(&sent))
+            }),
             ("GET", "") => Answer::new("text/html; charset=utf-8", self.page.clone().into_bytes()),
             ("GET", path) if path.starts_with("tile/") => self.tile(path).unwrap_or_else(not_found),
             ("POST", "ping") => Answer::json(&json!({})),
             ("POST", "measure") => asked(request, |pointed: Pointed| self.measured(&pointed)),
             ("POST", "predict") => asked(request, |known: Known| self.predicted(&known)),
-            (_, "" | "ping" | "measure" | "predict") => Answer::words(405, "not in this way"),
+            (_, "" | "ping" | "measure" | "predict" | "points") => Answer::words(405, "not in this way"),
             _ => not_found(),
-        }
+        };
+        (answer, used)
     }
 
     fn tile(&self, path: &str) -> Option<Answer> {

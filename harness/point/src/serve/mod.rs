@@ -2,21 +2,24 @@
 
 mod guard;
 mod http;
+mod kept;
 mod measuring;
 
+use std::collections::VecDeque;
 use std::io::{self, BufReader, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use guard::Guard;
-use http::{Answer, Request};
+use http::{Answer, Request, Timed};
 
+pub use kept::Kept;
 pub use measuring::Served;
 
-/// Requests at a time; more are not answered.
+/// Connections at a time: beyond them the one that waits longest for its request goes.
 const MOST: usize = 32;
 /// Bytes that are read of what follows a request that is none.
 const MOST_LEFT: u64 = 1 << 20;
@@ -28,6 +31,36 @@ pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
     guard: Guard,
+    patience: Duration,
+}
+
+/// What all connections have in common.
+struct Common {
+    /// When somebody used the page last.
+    used: Mutex<Instant>,
+    /// How many there are.
+    count: AtomicUsize,
+    /// Those whose request has not come, the oldest first.
+    waiting: Mutex<VecDeque<(usize, TcpStream)>>,
+}
+
+impl Common {
+    fn waiting(&self) -> MutexGuard<'_, VecDeque<(usize, TcpStream)>> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Makes room for one more; false where none is to be had.
+    fn room(&self) -> bool {
+        if self.count.load(Ordering::Relaxed) < MOST {
+            return true;
+        }
+        let oldest = self.waiting().pop_front();
+        oldest.is_some_and(|(_, stream)| stream.shutdown(Shutdown::Both).is_ok()) && self.count.load(Ordering::Relaxed) < 2 * MOST
+    }
+
+    fn idle(&self) -> Duration {
+        self.used.lock().unwrap_or_else(PoisonError::into_inner).elapsed()
+    }
 }
 
 impl Server {
@@ -38,7 +71,7 @@ impl Server {
     pub fn open() -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
         let address = listener.local_addr()?;
-        Ok(Self { listener, address, guard: Guard::new(address)? })
+        Ok(Self { listener, address, guard: Guard::new(address)?, patience: PATIENCE })
     }
 
     /// The address of the page, with the token: a secret of whom it is shown to.
@@ -46,69 +79,78 @@ impl Server {
         format!("http://{}/{}/", self.address, self.guard.token())
     }
 
-    /// Answers until no request with the token came for `idle`.
+    /// Answers until nobody used the page for `idle`: no request with the token came but those by which pages ask what others changed. Then it ends within the
+    /// time that a request under way may take.
     ///
     /// # Errors
     /// What the system refuses; what a browser breaks off is none.
     pub fn run(&self, served: &Served<'_>, idle: Duration) -> io::Result<()> {
-        let last = Mutex::new(Instant::now());
-        let (ended, under_way) = (AtomicBool::new(false), AtomicUsize::new(0));
+        let ended = AtomicBool::new(false);
+        let common = Common { used: Mutex::new(Instant::now()), count: AtomicUsize::new(0), waiting: Mutex::default() };
         thread::scope(|scope| {
             scope.spawn(|| {
-                let since = || last.lock().unwrap_or_else(PoisonError::into_inner).elapsed();
                 while !ended.load(Ordering::Relaxed) {
-                    let left = idle.saturating_sub(since());
+                    let left = idle.saturating_sub(common.idle());
                     if left.is_zero() {
                         ended.store(true, Ordering::Relaxed);
                         // Wakes what waits for a connection; if that fails it is awake.
-                        TcpStream::connect(self.address).ok();
+                        TcpStream::connect_timeout(&self.address, Duration::from_secs(1)).ok();
                     }
                     thread::sleep(left.min(Duration::from_millis(500)));
                 }
             });
-            for stream in self.listener.incoming() {
+            for (number, stream) in self.listener.incoming().enumerate() {
                 if ended.load(Ordering::Relaxed) {
                     break;
                 }
                 // One that is broken off before it is taken is none.
-                let Ok(stream) = stream else { continue };
-                if under_way.fetch_add(1, Ordering::Relaxed) >= MOST {
-                    under_way.fetch_sub(1, Ordering::Relaxed);
+                let Some((stream, other)) = stream.ok().and_then(|stream| stream.try_clone().ok().map(|other| (stream, other))) else {
+                    continue;
+                };
+                if !common.room() {
                     continue;
                 }
-                let (last, under_way) = (&last, &under_way);
+                common.count.fetch_add(1, Ordering::Relaxed);
+                common.waiting().push_back((number, other));
+                let common = &common;
                 scope.spawn(move || {
                     // A browser that went away is no error.
-                    self.serve(&stream, served, last).ok();
-                    under_way.fetch_sub(1, Ordering::Relaxed);
+                    self.serve((number, &stream), served, common).ok();
+                    common.waiting().retain(|(other, _)| *other != number);
+                    common.count.fetch_sub(1, Ordering::Relaxed);
                 });
             }
             ended.store(true, Ordering::Relaxed);
+            common.waiting().drain(..).for_each(|(_, stream)| drop(stream.shutdown(Shutdown::Both)));
         });
         Ok(())
     }
 
-    fn serve(&self, stream: &TcpStream, served: &Served<'_>, last: &Mutex<Instant>) -> io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
-        stream.set_write_timeout(Some(PATIENCE))?;
-        let mut input = BufReader::new(stream);
-        let answer = match Request::read(&mut input, PATIENCE)? {
+    fn serve(&self, (number, stream): (usize, &TcpStream), served: &Served<'_>, common: &Common) -> io::Result<()> {
+        let mut input = BufReader::new(Timed::new(stream, self.patience));
+        let answer = match Request::read(&mut input)? {
             Err(answer) => {
-                answer.write(&mut { stream })?;
+                answer.write(&mut Timed::new(stream, self.patience))?;
                 // An answer is lost if the connection is closed while more of the request arrives.
                 stream.shutdown(Shutdown::Write)?;
                 io::copy(&mut input.take(MOST_LEFT), &mut io::sink())?;
                 return Ok(());
             }
-            Ok(request) => match self.guard.admits(&request) {
-                Err(answer) => answer,
-                Ok(path) => {
-                    *last.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
-                    served.answer(&request, path)
+            Ok(request) => {
+                common.waiting().retain(|(other, _)| *other != number);
+                match self.guard.admits(&request) {
+                    Err(answer) => answer,
+                    Ok(path) => {
+                        let (answer, use_of_page) = served.answer(&request, path);
+                        if use_of_page {
+                            *common.used.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+                        }
+                        answer
+                    }
                 }
-            },
+            }
         };
-        let mut output = io::BufWriter::new(stream);
+        let mut output = io::BufWriter::new(Timed::new(stream, self.patience));
         answer.write(&mut output)?;
         output.flush()
     }

@@ -1,6 +1,9 @@
-use calibench_exchange::{ControlRow, write_png};
+use std::fs;
+
+use calibench_exchange::{ControlRow, OutputFile, read_points, write_png};
 use calibench_measure::Registry;
-use calibench_model::Image;
+use calibench_model::{Image, TargetKind};
+use serde_json::{Value, json};
 
 use super::*;
 use crate::page::Content;
@@ -24,7 +27,11 @@ fn post(path: &str, body: &str) -> String {
 
 /// A server of one photograph, a chess corner at (40.25, 30), that ends after `idle`.
 fn with_server(idle: Duration, work: impl FnOnce(&Server)) {
-    let folder = tempfile::tempdir().unwrap();
+    with_folder(idle, PATIENCE, &tempfile::tempdir().unwrap(), work);
+}
+
+/// The same in a folder that may hold points already, by a server of less patience.
+fn with_folder(idle: Duration, patience: Duration, folder: &tempfile::TempDir, work: impl FnOnce(&Server)) {
     let path = folder.path().join("a.png");
     let edge = |d: f64| (0.5 + 0.5 * (d / 1.2).tanh()) as f32;
     let image = Image::from_fn(96, 64, |x, y| {
@@ -40,8 +47,10 @@ fn with_server(idle: Duration, work: impl FnOnce(&Server)) {
         .map(|(i, [x, y])| ControlRow::new(format!("t{i}"), [*x, *y, 0.0]))
         .collect();
     let photos = vec![("a.png".to_owned(), path.as_path())];
-    let served = Served::new(&Content::default(), photos, (&method, operator), None, &control).unwrap();
-    let server = Server::open().unwrap();
+    let file = OutputFile::open(&folder.path().join("pointed.csv")).unwrap();
+    let kept = Kept::open(file, vec!["a.png".to_owned()], Some(TargetKind::ChessCorner)).unwrap();
+    let served = Served::new(&Content::default(), photos, (&method, operator), None, &control, &kept).unwrap();
+    let server = Server { patience, ..Server::open().unwrap() };
     thread::scope(|scope| {
         let running = scope.spawn(|| server.run(&served, idle));
         work(&server);
@@ -111,4 +120,109 @@ fn a_server_that_nobody_asks_ends() {
     let begun = Instant::now();
     with_server(Duration::from_millis(300), |server| assert_eq!(ask(server, "GET / HTTP/1.1\r\nHost: HOST\r\n\r\n").0, 403));
     assert!(begun.elapsed() < Duration::from_secs(20));
+}
+
+fn sent(server: &Server, since: Option<&str>, changes: &Value) -> (u16, Value) {
+    let (status, answer) = ask(server, &post("points", &json!({ "since": since, "changes": changes }).to_string()));
+    (status, serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap_or_default())
+}
+
+#[test]
+fn points_of_two_pages_are_merged_on_the_disk_and_outlive_the_server() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pointed.csv");
+    fs::write(&path, "image,target,x,y\nother.png,t9,7,8\na.png,t0,1,2\n").unwrap();
+    let second = Duration::from_secs(1);
+    with_folder(second, PATIENCE, &folder, |server| {
+        let (_, first) = sent(server, None, &json!([]));
+        assert_eq!(first["points"], json!([[["t0", 1.0, 2.0]]]));
+        // Two pages that do not know of each other.
+        sent(server, first["revision"].as_str(), &json!([[0, "t1", [3.5, 4.25]], [0, "=t2", [5, 6]]]));
+        let (_, second) = sent(server, first["revision"].as_str(), &json!([[0, "t0", null], [0, "t3", [9, 9]]]));
+        assert_eq!(second["points"], json!([[["t1", 3.5, 4.25], ["=t2", 5.0, 6.0], ["t3", 9.0, 9.0]]]));
+        // What is known is not said again; what another program writes is.
+        assert!(sent(server, second["revision"].as_str(), &json!([])).1.get("points").is_none());
+        fs::write(&path, "image,target,x,y\nother.png,t9,7,8\na.png,t1,3.5,4\n").unwrap();
+        assert_eq!(sent(server, second["revision"].as_str(), &json!([])).1["points"], json!([[["t1", 3.5, 4.0]]]));
+        for wrong in [json!([[1, "t1", [1, 1]]]), json!([[0, " ", [1, 1]]]), json!([[0, "a\nb", [1, 1]], [0, "t5", [1, 1]]])] {
+            assert_eq!(sent(server, None, &wrong).0, 500, "{wrong}");
+        }
+        assert_eq!(ask(server, &post("points", r#"{"changes":[[0,"t1"]]}"#)).0, 400);
+    });
+    with_folder(second, PATIENCE, &folder, |server| {
+        assert_eq!(sent(server, None, &json!([[0, "t4", [2, 2]]])).1["points"], json!([[["t1", 3.5, 4.0], ["t4", 2.0, 2.0]]]));
+    });
+    let points = read_points(&path).unwrap().points;
+    let rows: Vec<_> = points.rows().map(|row| (row.image, row.target, row.start.kind)).collect();
+    assert_eq!(rows, [("other.png", "t9", None), ("a.png", "t1", None), ("a.png", "t4", Some(TargetKind::ChessCorner))]);
+}
+
+#[test]
+fn a_table_of_something_else_is_not_written_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pointed.csv");
+    for (text, expected) in [
+        ("a,b\n1,2\n", "unknown"),
+        ("image,target,x,y,sxx,sxy,syy\na.png,t0,1,2,1,0,1\n", "measured points"),
+        ("image,target,x,y,method,status,reason\na.png,t0,,,forstner,rejected,border\n", "measured points"),
+    ] {
+        fs::write(&path, text).unwrap();
+        let error = Kept::open(OutputFile::open(&path).unwrap(), vec!["a.png".to_owned()], None).err().unwrap();
+        assert!(error.contains("pointed.csv") && error.contains(expected), "{error}");
+    }
+}
+
+/// Connections that send next to nothing.
+fn slow(server: &Server, count: usize) -> Vec<TcpStream> {
+    let one = |_| {
+        let mut stream = TcpStream::connect(server.address).unwrap();
+        stream.write_all(b"GET /").unwrap();
+        stream
+    };
+    (0..count).map(one).collect()
+}
+
+#[test]
+fn slow_clients_block_nobody_and_do_not_keep_the_server() {
+    let begun = Instant::now();
+    with_server(Duration::from_millis(500), |server| {
+        let held = slow(server, 3 * MOST);
+        assert_eq!(ask(server, "GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\n\r\n").0, 200);
+        // They stay open until the server has ended: nobody uses the page any more.
+        std::mem::forget(held);
+    });
+    assert!(begun.elapsed() < PATIENCE, "{:?}", begun.elapsed());
+}
+
+#[test]
+fn a_deadline_holds_within_a_line() {
+    with_folder(Duration::from_secs(3), Duration::from_millis(300), &tempfile::tempdir().unwrap(), |server| {
+        let (begun, [mut stream]) = (Instant::now(), <[TcpStream; 1]>::try_from(slow(server, 1)).unwrap());
+        // A byte now and then: each comes in time, the line never.
+        let dripped = (0..40).take_while(|_| {
+            thread::sleep(Duration::from_millis(50));
+            stream.write_all(b"x").is_ok()
+        });
+        assert!(dripped.count() < 40 && begun.elapsed() < Duration::from_secs(2));
+    });
+}
+
+#[test]
+fn pages_that_only_ask_what_others_changed_do_not_keep_the_server() {
+    with_server(Duration::from_millis(600), |server| {
+        let request = post("points", r#"{"since":null,"changes":[]}"#).replace("HOST", &server.address.to_string());
+        let is_answered = || {
+            let mut stream = TcpStream::connect(server.address).unwrap();
+            stream.set_read_timeout(Some(Duration::from_millis(300))).unwrap();
+            stream.write_all(request.replace("TOKEN", server.guard.token()).as_bytes()).ok();
+            stream.read(&mut [0; 16]).is_ok_and(|read| read > 0)
+        };
+        assert!(is_answered());
+        let begun = Instant::now();
+        while begun.elapsed() < Duration::from_secs(2) {
+            is_answered();
+            thread::sleep(Duration::from_millis(50));
+        }
+        assert!(!is_answered(), "it has ended");
+    });
 }
