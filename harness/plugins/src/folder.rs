@@ -6,7 +6,7 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 use calibench_exchange::points::{Check, parse_points_checked};
-use calibench_exchange::{PointFile, PointRef, encode_float_tiff, encode_png, write_points};
+use calibench_exchange::{PointFile, PointRef, at, encode_float_tiff, encode_png, write_points};
 use calibench_measure::Settings;
 use calibench_model::{Image, Measurement, Rejection, Start};
 use rustix::fs::OFlags;
@@ -46,7 +46,7 @@ fn ended(error: &io::Error) -> Fault {
 /// Puts the image and the points into the folder; the image's name.
 fn put(folder: &Path, image: &Image, grey: Grey, starts: Option<&[Start]>) -> io::Result<&'static str> {
     let images = folder.join(IMAGES);
-    fs::create_dir(&images)?;
+    fs::create_dir(&images).map_err(|error| at(&images, &error))?;
     let name = if grey == Grey::Gray32f { "0001.tif" } else { "0001.png" };
     let mut file = Vec::new();
     match grey {
@@ -54,11 +54,12 @@ fn put(folder: &Path, image: &Image, grey: Grey, starts: Option<&[Start]>) -> io
         Grey::Gray16le => encode_png(&mut file, image, true)?,
         Grey::Gray32f => file = encode_float_tiff(image)?,
     }
-    fs::write(images.join(name), file)?;
+    fs::write(images.join(name), file).map_err(|error| at(&images.join(name), &error))?;
     if let Some(starts) = starts {
         let targets: Vec<String> = (1..=starts.len()).map(|number| number.to_string()).collect();
         let rows = targets.iter().zip(starts).map(|(target, start)| PointRef { image: name, target, start: *start });
-        write_points(File::create(folder.join(POINTS))?, rows)?;
+        let path = folder.join(POINTS);
+        File::create(&path).and_then(|file| write_points(file, rows)).map_err(|error| at(&path, &error))?;
     }
     Ok(name)
 }

@@ -9,6 +9,7 @@ mod boards;
 mod confine;
 mod conformance;
 mod declaration;
+mod descendants;
 mod error;
 mod file;
 mod folder;

@@ -13,6 +13,7 @@ use rustix::process::{Pid, Signal, kill_process_group};
 use rustix::time::Timespec;
 
 use crate::answer::Fault;
+use crate::descendants;
 
 /// How much of what it says on standard error is kept, bytes.
 const TAIL: usize = 4096;
@@ -252,9 +253,12 @@ impl Process {
     }
 }
 
-/// Its whole process group is ended.
+/// Its whole process group is ended, and what it started.
 impl Drop for Process {
     fn drop(&mut self) {
+        if matches!(self.child.try_wait(), Ok(None)) {
+            descendants::end(Pid::from_child(&self.child));
+        }
         if let Some(group) = Pid::from_raw(self.child.id() as i32) {
             kill_process_group(group, Signal::KILL).ok();
         }

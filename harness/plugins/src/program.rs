@@ -189,8 +189,8 @@ impl Program {
         for threads in ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"] {
             command.env(threads, "1");
         }
-        for (name, _) in std::env::vars_os() {
-            if ["PWD", "OLDPWD"].contains(&&*name.to_string_lossy()) || name.to_string_lossy().starts_with("CALIBENCH_") {
+        for (name, value) in std::env::vars_os() {
+            if says_where(&name.to_string_lossy(), &value.to_string_lossy(), confinement.closed.as_deref()) {
                 command.env_remove(name);
             }
         }
@@ -201,6 +201,12 @@ impl Program {
     pub fn patience(&self, settings: &Settings) -> Arc<Patience> {
         locked(&self.patience).entry(greeting(settings.iter())).or_default().clone()
     }
+}
+
+/// Whether a variable says where calibench was called, or with what. `PATH` stays: programs are found by it.
+fn says_where(name: &str, value: &str, project: Option<&Path>) -> bool {
+    let names_project = project.and_then(Path::to_str).is_some_and(|project| value.contains(project));
+    ["PWD", "OLDPWD", "_"].contains(&name) || name.starts_with("CALIBENCH_") || (names_project && name != "PATH")
 }
 
 fn ended(message: String) -> Fault {
@@ -238,4 +244,27 @@ pub fn method(declaration: Declaration, folder: &Path, launcher: &Launcher) -> M
         Err(fault) => Ok(Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) }),
     };
     Method { name, about, source, version: format!("? ({files})"), parameters, build: Build::Outside(Arc::new(build)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variables_that_say_where_it_was_called_are_taken_away() {
+        let project = Some(Path::new("/home/me/bench"));
+        for (name, value) in [
+            ("PWD", "/"),
+            ("OLDPWD", "/tmp"),
+            ("_", "/usr/bin/calibench"),
+            ("CALIBENCH_ROOT", ""),
+            ("LAST", "run -f /home/me/bench/scenarios/corners/noise.toml"),
+        ] {
+            assert!(says_where(name, value, project), "{name}");
+        }
+        for (name, value) in [("HOME", "/home/me"), ("PATH", "/home/me/bench/target:/usr/bin"), ("LANG", "C"), ("CUDA_PATH", "/opt/cuda")] {
+            assert!(!says_where(name, value, project), "{name}");
+        }
+        assert!(!says_where("LAST", "/home/me/bench", None));
+    }
 }
