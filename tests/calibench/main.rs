@@ -51,6 +51,7 @@ mod resect;
 mod schema;
 mod sets;
 mod several;
+mod standard;
 mod store;
 mod sweeps;
 mod zhu;
