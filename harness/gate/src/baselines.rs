@@ -155,7 +155,10 @@ impl Baselines {
     pub(super) fn files(&self) -> io::Result<Vec<PathBuf>> {
         let there = match std::fs::read_dir(&self.folder) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
-            entries => entries?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?,
+            entries => {
+                let paths = entries.and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>());
+                paths.map_err(|error| at(&self.folder, &error))?
+            }
         };
         let mut files: Vec<PathBuf> = there.into_iter().filter(|path| is_baseline(path)).collect();
         files.extend(self.index.files.keys().map(|file| self.folder.join(file)));
