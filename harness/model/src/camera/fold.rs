@@ -1,19 +1,17 @@
 //! Where a camera stops being one to one.
 
-use super::{CameraModel, ImageSize, NoCounterpart, Ray};
+use super::{CameraModel, ImageSize, Ray, without_ray};
 use crate::{CornerPoint, PixelPoint};
 
 /// Directions in which the edge of the fold is looked for.
 const DIRECTIONS: usize = 1440;
-/// Columns and rows of the grid whose points are counted.
-const GRID: (usize, usize) = (120, 80);
 
 /// A fold inside the frame: beyond it, no pixel has one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fold {
     /// Smallest distance of the fold from the image of the axis, px.
     pub radius_px: f64,
-    /// Share of the frame that lies beyond it, 0 to 1, from a grid of 120 x 80 points.
+    /// Share of the frame that has no ray, 0 to 1: [`without_ray`].
     pub share: f64,
 }
 
@@ -30,7 +28,7 @@ pub fn fold(camera: &dyn CameraModel) -> Option<Fold> {
     let to_corners = corners(camera.size()).map(|corner| (corner.y - centre.y).atan2(corner.x - centre.x));
     let edge = angles.chain(to_corners).filter_map(|angle| camera.fold_towards(angle)).filter(inside);
     let radius_px = edge.map(|point| point.distance(centre)).min_by(f64::total_cmp)?;
-    Some(Fold { radius_px, share: share(camera) })
+    Some(Fold { radius_px, share: without_ray(camera) })
 }
 
 /// The outer corners of a frame.
@@ -45,20 +43,10 @@ pub(super) fn is_inside(size: ImageSize, point: PixelPoint) -> bool {
     (0.0..=f64::from(size.width)).contains(&corner.x) && (0.0..=f64::from(size.height)).contains(&corner.y)
 }
 
-fn share(camera: &dyn CameraModel) -> f64 {
-    let size = camera.size();
-    let (columns, rows) = GRID;
-    let place = |index: usize, count: usize, length: u32| f64::from(length - 1) * index as f64 / (count - 1) as f64;
-    let points =
-        (0..columns * rows).map(|i| PixelPoint::new(place(i % columns, columns, size.width), place(i / columns, rows, size.height)));
-    let folded = points.filter(|&point| matches!(camera.unproject(point), Err(NoCounterpart::Fold))).count();
-    folded as f64 / (columns * rows) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Ebner, OpenCv, OpenCvFisheye, Photogrammetric};
+    use crate::camera::{Ebner, NoCounterpart, OpenCv, OpenCvFisheye, Photogrammetric};
 
     /// The search alone.
     struct Searched<'a>(&'a dyn CameraModel);

@@ -25,12 +25,14 @@ pub mod photogrammetric;
 mod pinhole;
 pub mod pix4d;
 mod plane_map;
+mod plausible;
 pub mod prism_fisheye;
 pub mod rad_tan_prism_fisheye;
 mod ray;
 pub mod splined;
 pub mod tool_conventions;
 mod wide_angle;
+mod without_ray;
 
 use serde::{Deserialize, Serialize};
 
@@ -55,10 +57,12 @@ pub use opencv::OpenCv;
 pub use opencv_fisheye::OpenCvFisheye;
 pub use photogrammetric::Photogrammetric;
 pub use pix4d::Pix4d;
+pub use plausible::{Implausible, implausible};
 pub use prism_fisheye::PrismFisheye;
 pub use rad_tan_prism_fisheye::RadTanPrismFisheye;
 pub use ray::Ray;
 pub use splined::Splined;
+pub use without_ray::without_ray;
 
 /// Columns and rows of a camera's images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -35,7 +35,8 @@ pub(super) struct State<T> {
 }
 
 impl Problem<'_> {
-    fn unknowns(&self) -> usize {
+    /// Free parameters, and the three of the rotation if it is free.
+    pub(super) fn unknowns(&self) -> usize {
         self.free.len() + if self.rotation { 3 } else { 0 }
     }
 

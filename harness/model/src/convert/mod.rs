@@ -152,6 +152,14 @@ pub enum ConvertError {
     /// The fit found no minimum.
     #[error("the fit does not converge")]
     NotConverged,
+    /// The region holds fewer nodes of the grid than the fit has parameters for.
+    #[error("the region holds {nodes} nodes of the grid, and {parameters} parameters need {} at least: choose a larger region", parameters.div_ceil(2))]
+    TooFewNodes {
+        /// Nodes of the grid within the region; each gives two equations.
+        nodes: usize,
+        /// Parameters of the fit.
+        parameters: usize,
+    },
     /// A parameter has no effect of its own.
     #[error("parameter `{parameter}` cannot be estimated: the others have the same effect")]
     NotEstimable {
@@ -235,6 +243,10 @@ fn fitted(
     let free = target.free(&target.blank(source.size()));
     let over = Over { sights: sights(source, options.region, options.columns)?, free };
     let problem = over.problem(options);
+    let (nodes, parameters) = (over.sights.len(), problem.unknowns());
+    if 2 * nodes < parameters {
+        return Err(ConvertError::TooFewNodes { nodes, parameters });
+    }
     let state = problem.solve(cheapest(starts, &problem)?)?;
     let (residual, residuals) = check(source, &state, options)?;
     let verdict = judge(residual, options)?;

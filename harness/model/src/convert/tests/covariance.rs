@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::super::{ConvertError, ConvertOptions, Target, convert};
+use super::super::{ConvertError, ConvertOptions, Region, Target, convert};
 use super::{mild, values};
 use crate::camera::{Camera, CameraModel};
 
@@ -71,4 +71,24 @@ fn a_covariance_of_another_camera_is_refused() {
     for target in [Target::metashape(), Target::photogrammetric(4.7)] {
         assert_eq!(convert(&mild(), target, &options(wrong.clone())).map(|found| found.camera), expected);
     }
+}
+
+/// A region so small that its nodes give fewer equations than the target has parameters is refused, with a covariance and without one.
+#[test]
+fn a_region_of_fewer_nodes_than_parameters_is_refused() {
+    let mut refused = 0;
+    for px in [1.0, 10.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0, 200.0] {
+        for q in [None, Some(covariance())] {
+            let options = ConvertOptions { region: Region::Radius { px }, ..options(q) };
+            match convert(&mild(), Target::photogrammetric(4.7), &options) {
+                Err(ConvertError::TooFewNodes { nodes, parameters: 10 }) => {
+                    assert!(nodes < 5, "{nodes}");
+                    refused += 1;
+                }
+                Err(ConvertError::NotEstimable { .. } | ConvertError::NotConverged) | Ok(_) => {}
+                Err(other) => panic!("{px}: {other}"),
+            }
+        }
+    }
+    assert!(refused >= 2 && refused % 2 == 0, "{refused}");
 }

@@ -7,7 +7,7 @@ use super::super::{ConvertError, DifferenceOptions, Region, Rotation, Vector, di
 use super::{SIZE, mild, opencv, photogrammetric};
 use crate::camera::{Camera, CameraModel, ImageSize, OpenCv, Photogrammetric};
 
-const PLAIN: DifferenceOptions = DifferenceOptions { region: Region::Frame, rotation: false, compensation: false, columns: 41 };
+const PLAIN: DifferenceOptions = DifferenceOptions { region: Region::Frame, rotation: false, compensation: false, columns: 41, finer: 1 };
 
 #[test]
 fn a_camera_does_not_differ_from_itself() {
@@ -111,4 +111,28 @@ fn what_folds_is_not_compared() {
 fn images_must_have_one_size() {
     let other = Photogrammetric { size: ImageSize { width: SIZE.width + 1, ..SIZE }, ..photogrammetric() };
     assert!(difference(&mild(), &other.into(), &PLAIN).is_err());
+}
+
+/// Beside nearly every pixel, after the same rotation: over the frame, within a radius, and where a part is not pictured.
+#[test]
+fn sizes_on_the_finer_grid_are_right_to_a_hundredth() {
+    let steep = opencv(5, &[-0.06, 0.02, 5e-4, -1.4e-3, 0.2]).into();
+    let folded = opencv(5, &[-0.9]).into();
+    let mut coarse_is_off = 0;
+    for (second, region) in
+        [(steep, Region::Frame), (steep, Region::Radius { px: 450.0 }), (folded, Region::Frame), (folded, Region::Radius { px: 500.0 })]
+    {
+        let of = |finer| difference(&mild(), &second, &DifferenceOptions { region, finer, ..PLAIN }).unwrap();
+        let (found, coarse) = (of(DifferenceOptions::FINE), of(1));
+        let all = difference(&mild(), &second, &DifferenceOptions { region, columns: 641, rotation: false, ..PLAIN });
+        let all = all.unwrap().spread;
+        assert!(
+            (found.spread.rms_px / all.rms_px - 1.0).abs() < 0.01 && (found.spread.max_px / all.max_px - 1.0).abs() < 0.02,
+            "{:?} {all:?}",
+            found.spread
+        );
+        coarse_is_off += usize::from((coarse.spread.rms_px / all.rms_px - 1.0).abs() > 0.01);
+        assert_eq!(found.vectors, coarse.vectors);
+    }
+    assert!(coarse_is_off > 0);
 }
