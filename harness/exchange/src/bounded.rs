@@ -86,13 +86,13 @@ mod tests {
     fn what_is_larger_is_refused_with_its_limit() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");
-        for (length, whole) in [(0, true), (10, true), (11, false), (1 << 40, false)] {
+        for (length, is_whole) in [(0, true), (10, true), (11, false), (1 << 40, false)] {
             // A file of that length, which takes no place on the disk.
             let file = File::create(&path).unwrap();
             file.set_len(length).unwrap();
             match whole(&path, 10) {
-                Ok(bytes) => assert!(whole && bytes.len() as u64 == length),
-                Err(error) => assert!(!whole && error.to_string().contains("10 bytes"), "{error}"),
+                Ok(bytes) => assert!(is_whole && bytes.len() as u64 == length),
+                Err(error) => assert!(!is_whole && error.to_string().contains("10 bytes"), "{error}"),
             }
         }
         // Without a length that is known.

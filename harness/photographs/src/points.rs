@@ -248,7 +248,7 @@ mod tests {
         for (m, method) in methods.iter().take(4).enumerate() {
             let mut point = 0;
             for (path, (_, starts)) in photos.iter().zip(&boards) {
-                let alone = method.operator.as_ref().unwrap().measure_all(&read_photo(path).unwrap().image, starts);
+                let alone = method.operator.as_ref().unwrap().measure_all(&calibench_exchange::read_photo(path).unwrap().image, starts);
                 assert!(alone.iter().filter(|result| result.is_ok()).count() * 2 > starts.len(), "{}", method.label);
                 for result in alone {
                     let outcome = result.map_or_else(Outcome::Rejected, Outcome::Measured);

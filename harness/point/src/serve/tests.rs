@@ -98,7 +98,7 @@ fn who_has_the_token_is_answered_and_nobody_else() {
 fn what_is_pointed_at_is_measured_and_the_rest_predicted() {
     with_server(Duration::from_secs(1), |server| {
         let (status, answer) = ask(server, &post("measure", r#"{"photo":0,"x":41,"y":31}"#));
-        let value: serde_json::Value = serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap();
+        let value: Value = serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap();
         let off = |key: &str, truth: f64| (value[key].as_f64().unwrap() - truth).abs();
         assert!(status == 200 && off("x", 40.25) < 0.02 && off("y", 30.0) < 0.02, "{value}");
         assert!(value["covariance"].is_array() && value["method"].as_str().unwrap().starts_with("parametric_corner"), "{value}");
@@ -107,7 +107,7 @@ fn what_is_pointed_at_is_measured_and_the_rest_predicted() {
         assert_eq!(ask(server, &post("measure", r#"{"photo":1,"x":80,"y":10}"#)).0, 404);
         assert_eq!(ask(server, &post("measure", r#"{"photo":0}"#)).0, 400);
         let (_, answer) = ask(server, &post("predict", r#"{"photo":0,"points":[["t0",10,10],["t1",50,10],["t2",50,50],["t3",10,50]]}"#));
-        let value: serde_json::Value = serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap();
+        let value: Value = serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap();
         assert_eq!(value["targets"][0][0], "t4");
         assert!((value["targets"][0][1].as_f64().unwrap() - 30.0).abs() < 1e-6, "{value}");
         let (_, answer) = ask(server, &post("predict", r#"{"photo":0,"points":[["t0",10,10]]}"#));

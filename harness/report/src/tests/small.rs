@@ -13,7 +13,7 @@ use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
 use calibench_records::stored::{Table, open};
 use tempfile::TempDir;
 
-use crate::{Places, write};
+use crate::{Places, fill};
 
 const NAME: &str = "small/scene";
 
@@ -164,7 +164,7 @@ impl Family {
     fn write(&self) -> Result<PathBuf, String> {
         let at = |name: &str| self.folder.path().join(name);
         let places = Places { records: at("records"), published: at("published"), cameras: at("cameras"), reports: at("reports") };
-        write(&places, "small", &[NAME.to_owned()]).map_err(|error| error.to_string())?;
+        fill(&places, "small", &[NAME.to_owned()]).and_then(|filled| filled.put()).map_err(|error| error.to_string())?;
         Ok(at("reports/small/README.md"))
     }
 
