@@ -13,7 +13,7 @@ mod levels;
 mod rows;
 mod turn;
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -161,7 +161,7 @@ pub(crate) fn reader(input: &mut dyn Input) -> io::Result<ImageReader<&mut dyn I
 
 fn open(path: &Path) -> Result<File, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
-    let about = fs::metadata(path).map_err(in_file)?;
+    let about = path.metadata().map_err(in_file)?;
     if about.is_dir() {
         return Err(in_file(io::Error::other("is a folder, expected an image file")));
     }
