@@ -25,9 +25,10 @@ pub struct CameraCommand {
 
 impl CameraCommand {
     pub fn run(&self) -> Result<(), Failure> {
-        let (file, count) = self.reading.file(&self.file, if self.answered.json { usize::MAX } else { MOST_LISTED })?;
+        let opened = self.reading.opened(&self.file)?;
+        let (file, count) = opened.file(if self.answered.json { usize::MAX } else { MOST_LISTED })?;
         let format = file.format;
-        let camera = self.reading.one(&self.file)?;
+        let camera = self.reading.one_of(&self.file, opened)?;
         if self.answered.json {
             return answer(&CameraFileAnswer::new(&self.file.display().to_string(), &file, &camera));
         }

@@ -115,25 +115,24 @@ impl Reading {
         ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from }
     }
 
-    /// A file as it is, of a long list its first `most` cameras; and how many it holds.
-    pub fn file(&self, path: &Path, most: usize) -> Result<(CameraFile, usize), Failure> {
-        if let Some(list) = CameraList::open(path, &self.options())? {
-            let cameras = list.pieces(most)?.next().transpose()?.unwrap_or_default();
-            return Ok((CameraFile { format: list.format(), cameras }, list.len()));
-        }
-        let file = read_camera_with(path, &self.options())?;
-        let count = file.cameras.len();
-        Ok((file, count))
+    /// Opens a file, once: a pipe has no second time.
+    pub fn opened(&self, path: &Path) -> Result<Opened, Failure> {
+        Ok(match CameraList::open(path, &self.options())? {
+            Some(list) => Opened::List(list),
+            None => Opened::Whole(read_camera_with(path, &self.options())?),
+        })
     }
 
     /// The camera that is meant, with a word on standard error about what was assumed and left out.
     pub fn one(&self, path: &Path) -> Result<NamedCamera, Failure> {
-        let (format, count, chosen) = match CameraList::open(path, &self.options())? {
-            Some(list) => (list.format(), list.len(), self.choose(list.pieces(AT_A_TIME)?)?),
-            None => {
-                let file = read_camera_with(path, &self.options())?;
-                (file.format, file.cameras.len(), self.choose([Ok(file.cameras)])?)
-            }
+        self.one_of(path, self.opened(path)?)
+    }
+
+    /// The same of a file that was opened at `path`.
+    pub fn one_of(&self, path: &Path, opened: Opened) -> Result<NamedCamera, Failure> {
+        let (format, count, chosen) = match opened {
+            Opened::List(list) => (list.format(), list.len(), self.choose(list.pieces(AT_A_TIME)?)?),
+            Opened::Whole(file) => (file.format, file.cameras.len(), self.choose([Ok(file.cameras)])?),
         };
         let chosen = chosen.ok_or_else(|| match &self.camera {
             Some(name) => Failure::input(format!("{}: no camera is called {}", shown(path), escape::name(name))),
@@ -200,6 +199,25 @@ impl Reading {
             }
         }
         cameras
+    }
+}
+
+/// A camera file: a long list that is read in pieces, or all of it.
+pub enum Opened {
+    List(CameraList),
+    Whole(CameraFile),
+}
+
+impl Opened {
+    /// A file as it is, of a long list its first `most` cameras; and how many it holds.
+    pub fn file(&self, most: usize) -> Result<(CameraFile, usize), Failure> {
+        Ok(match self {
+            Self::List(list) => {
+                let cameras = list.pieces(most)?.next().transpose()?.unwrap_or_default();
+                (CameraFile { format: list.format(), cameras }, list.len())
+            }
+            Self::Whole(file) => (file.clone(), file.cameras.len()),
+        })
     }
 }
 
