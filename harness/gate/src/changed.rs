@@ -4,9 +4,6 @@ use super::TOLERANCE;
 use super::point_entry::{Entry, Found, Place};
 use super::table::MethodTable;
 
-/// Half a step of the sixth digit, as a fraction of a number that begins with 1: records hold six of a standard deviation.
-const HALF_A_DIGIT: f64 = 5e-6;
-
 /// A point with what was blessed and what is now.
 pub(super) type Pair<'a> = (&'a Place, &'a Entry, &'a Entry);
 
@@ -66,13 +63,8 @@ pub(super) fn agree(a: f64, b: f64) -> bool {
 
 fn same_sigma(old: &Found, new: &Found) -> bool {
     match (old.sigma, new.sigma) {
-        (Some(a), Some(b)) => same_deviation(a, b),
+        (Some(a), Some(b)) => agree(a, b) || a == b,
         (None, None) => true,
         _ => false,
     }
-}
-
-/// Whether two reported standard deviations, px, are the same but for last bits, and for the digits that records have.
-pub(super) fn same_deviation(a: f64, b: f64) -> bool {
-    agree(a, b) || a == b || (a - b).abs() <= HALF_A_DIGIT * a.abs().max(b.abs())
 }

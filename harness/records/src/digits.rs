@@ -41,9 +41,10 @@ pub(crate) fn difference(measured: f64, truth: f64) -> f64 {
     parts(error).map_or(error, |parts| parts / PARTS + 0.0)
 }
 
-/// A standard deviation, to six significant digits.
+/// A standard deviation, px, to six significant digits, and from 1 px on to seven decimals: others compare it to a millionth.
 pub(crate) fn deviation(px: f64) -> String {
-    format!("{px:.5e}").parse().map_or_else(|_| px.to_string(), |rounded: f64| rounded.to_string())
+    let text = if px.abs() >= 1.0 { format!("{px:.7}") } else { format!("{px:.5e}") };
+    text.parse().map_or_else(|_| px.to_string(), |rounded: f64| rounded.to_string())
 }
 
 #[cfg(test)]
@@ -59,7 +60,9 @@ mod tests {
         }
         // What is out of all bounds stays a number.
         assert_eq!(coordinate(1e300).parse::<f64>().unwrap(), 1e300);
-        for (px, expected) in [(1.0 / 7.0, "0.142857"), (0.000_012_345_678, "0.0000123457"), (12.5, "12.5"), (0.0, "0")] {
+        for (px, expected) in
+            [(1.0 / 7.0, "0.142857"), (0.000_012_345_678, "0.0000123457"), (12.5, "12.5"), (0.0, "0"), (12.345_678_912, "12.3456789")]
+        {
             assert_eq!(deviation(px), expected);
         }
     }

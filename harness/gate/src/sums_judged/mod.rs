@@ -1,6 +1,5 @@
 //! Two digests that differ, judged by counts and moments.
 
-use super::changed::same_deviation;
 use super::finding::{Finding, Verdict};
 use super::moments::{PointSums, Sum};
 
@@ -79,7 +78,7 @@ fn counts(pairs: &[(&str, &Sum, &Sum)], a: &Pooled, b: &Pooled, finding: Make<'_
 fn sigmas(old: &PointSums, new: &PointSums, finding: Make<'_>) -> Vec<Finding> {
     let pairs: Vec<(&Sum, &Sum)> = old.targets.iter().filter_map(|(name, a)| Some((a, new.targets.get(name)?))).collect();
     let other = |(a, b): &&(&Sum, &Sum)| match (a.sigma, b.sigma) {
-        (Some(a), Some(b)) => !same_deviation(a, b),
+        (Some(a), Some(b)) => (a - b).abs() > super::TOLERANCE,
         (Some(_), None) => b.counts[0] > 0,
         _ => false,
     };
