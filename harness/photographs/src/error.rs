@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_exchange::PhotoError;
+use calibench_model::camera::ImageSize;
 use thiserror::Error;
 
 /// What is wrong with photographs.
@@ -14,6 +15,9 @@ pub enum PhotographsError {
     /// There is none.
     #[error("no photograph was given")]
     None,
+    /// None has the size that is wanted, px.
+    #[error("no photograph has {} x {} px; expected one of that size, or the size of some of them", .0.width, .0.height)]
+    NoneOfSize(ImageSize),
     /// One is given twice.
     #[error("{}: given twice; expected each photograph once", .0.display())]
     Twice(PathBuf),

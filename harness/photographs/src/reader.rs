@@ -53,6 +53,9 @@ impl Reader {
         if let Some(only) = asked.only_size {
             let before = all.len();
             all.retain(|(_, head)| head.size(reading) == only);
+            if all.is_empty() {
+                return Err(PhotographsError::NoneOfSize(only));
+            }
             notes.extend(
                 (all.len() < before)
                     .then(|| format!("--only-size: {} of {before} photographs have another size and are left out", before - all.len())),
@@ -216,6 +219,6 @@ mod tests {
         assert_eq!(reader.photos(), [photos[2].clone(), photos[4].clone()]);
         assert!(reader.notes()[0].contains("4 of 6"));
         let none = Asked { only_size: Some(ImageSize { width: 1, height: 1 }), ..asked };
-        assert!(matches!(Reader::of(&photos, none), Err(PhotographsError::None)));
+        assert!(matches!(Reader::of(&photos, none), Err(PhotographsError::NoneOfSize(_))));
     }
 }
