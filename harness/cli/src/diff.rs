@@ -62,6 +62,7 @@ impl Diff {
             region: region(self.radius),
             rotation: !self.no_rotation,
             compensation: true,
+            finer: DifferenceOptions::FINE,
             ..DifferenceOptions::default()
         };
         let places = self.points.as_deref().map(places).transpose()?;

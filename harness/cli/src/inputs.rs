@@ -33,7 +33,7 @@ pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
 
 /// The first camera of a file.
 pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    let options = ReadOptions { size, fisheye: None, lens: None, from: None };
+    let options = ReadOptions { size, ..ReadOptions::default() };
     let (cameras, count) = match CameraList::open(path, &options)? {
         Some(list) => (list.pieces(1)?.next().transpose()?.unwrap_or_default(), list.len()),
         None => {

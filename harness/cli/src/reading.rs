@@ -41,6 +41,9 @@ pub struct Reading {
     /// Which camera of a file that holds several: its name, or its place counted from 1 [default: the first]
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
+    /// A key that is not known and left out although it may make the camera another one; may be repeated
+    #[arg(long = "ignore-key", value_name = "NAME")]
+    ignore: Vec<String>,
 }
 
 /// Which of two decentring coefficients multiplies r^2 + 2 x^2.
@@ -112,7 +115,7 @@ impl Reading {
             Lens::Brown => camera::Lens::Brown,
             Lens::Division => camera::Lens::Division,
         });
-        ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from }
+        ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from, ignore: self.ignore.clone() }
     }
 
     /// Opens a file, once: a pipe has no second time.

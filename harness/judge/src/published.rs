@@ -18,7 +18,7 @@ pub fn published_camera(path: &Path, name: &str, size: ImageSize) -> Result<Name
     if !path.is_file() {
         return Err(format!("{name} is not beside the photographs"));
     }
-    let read = read_camera_with(path, &ReadOptions { size: Some(size), fisheye: None, lens: None, from: None })
+    let read = read_camera_with(path, &ReadOptions { size: Some(size), ..ReadOptions::default() })
         .map_err(|_| format!("{name} cannot be read as a camera"))?;
     let camera = read.cameras.into_iter().next().ok_or_else(|| format!("{name} holds no camera"))?;
     let own = camera.camera.size();

@@ -109,7 +109,7 @@ impl Camera {
         let from = format.map(|name| {
             format_named(name).ok_or_else(|| input(format!("format: no such format as `{name}`; `calibench list formats` lists them")))
         });
-        let options = ReadOptions { size: size.map(size_of).transpose()?, fisheye, lens: None, from: from.transpose()? };
+        let options = ReadOptions { size: size.map(size_of).transpose()?, fisheye, from: from.transpose()?, ..ReadOptions::default() };
         let file = released(py, || read_camera_with(&path, &options))?.map_err(refused)?;
         let format = file.format;
         let cameras = OpenPoints::default().read(file);
@@ -178,6 +178,9 @@ impl Camera {
             return write_camera(&path, format, std::slice::from_ref(&self.named)).map_err(refused);
         }
         let file = for_file(&path, &self.named, to).map_err(refused)?;
+        if let Some(why) = &file.instead {
+            doubt(py, &format!("{}: {why}; it is written as it is, in the format of {}", path.display(), file.format.tool))?;
+        }
         if let Some((to, conversion)) = &file.fitted {
             let (rms, most) = (conversion.residual.rms_px, conversion.residual.max_px);
             doubt(py, &format!("{}: converted to {to} by a fit: residuals {rms:.3} px RMS, {most:.3} px at most", path.display()))?;

@@ -1,7 +1,7 @@
 //! A camera on a card: what it is, and what its parameters mean for the frame.
 
 use calibench_exchange::camera::{NamedCamera, ParameterCovariance, PoseFrame};
-use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold, without_ray};
 use calibench_model::convert::without_distortion;
 use calibench_model::{PixelPoint, escape};
 
@@ -44,6 +44,7 @@ pub fn camera_card(named: &NamedCamera) -> String {
         let of = match named.pose_frame {
             PoseFrame::World => "the world",
             PoseFrame::FirstCamera => "the rig's first camera",
+            PoseFrame::Rig => "the rig",
             PoseFrame::Imu => "the rig's inertial sensor",
         };
         line("position", format!("{x}, {y}, {z} in the axes of {of}"));
@@ -127,19 +128,6 @@ fn distortion_in_words(camera: &Camera) -> String {
         Corner::Moved(px) => format!("{} px", plain(px)),
     });
     format!("{} in the corners (clockwise from top left)", words.join(", "))
-}
-
-/// Columns and rows of the pixels that are looked at for rays.
-const GRID: (u32, u32) = (120, 80);
-
-/// Share of the frame whose pixels have no ray, 0 to 1.
-pub(crate) fn without_ray(camera: &Camera) -> f64 {
-    let (size, (columns, rows)) = (camera.size(), GRID);
-    let place = |index: u32, count: u32, length: u32| f64::from(length - 1) * f64::from(index) / f64::from(count - 1);
-    let pixels =
-        (0..columns * rows).map(|i| PixelPoint::new(place(i % columns, columns, size.width), place(i / columns, rows, size.height)));
-    let lost = pixels.filter(|&pixel| camera.unproject(pixel).is_err()).count();
-    lost as f64 / f64::from(columns * rows)
 }
 
 fn one_to_one(camera: &Camera) -> String {

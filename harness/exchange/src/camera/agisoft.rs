@@ -3,8 +3,8 @@
 use calibench_model::camera::{Agisoft, AgisoftFisheye, AgisoftVersion, Camera, FisheyeProjection, ImageSize};
 use roxmltree::Node;
 
-use super::number::{finite, scientific, shortened};
-use super::{CameraFileError, xml};
+use super::number::{scientific, shortened};
+use super::{CameraFileError, ReadOptions, xml};
 
 /// Coefficients of every version.
 const COEFFICIENTS: [&str; 8] = ["k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4"];
@@ -40,7 +40,12 @@ pub(super) fn projection_name(camera: &Camera) -> &'static str {
 }
 
 /// The camera of a `<calibration>`, and notes on what was left out. With `f` it is Metashape's, with `fx` and `fy` an older one. `stated` is what was said around it.
-pub(super) fn read(node: Node<'_, '_>, size: ImageSize, stated: Option<Projection>) -> Result<(Camera, Vec<String>), CameraFileError> {
+pub(super) fn read(
+    node: Node<'_, '_>,
+    size: ImageSize,
+    stated: Option<Projection>,
+    options: &ReadOptions,
+) -> Result<(Camera, Vec<String>), CameraFileError> {
     let inside = match xml::child(node, "projection")? {
         Some(own) => Some((own, projection(own, xml::text(own)?)?)),
         None => None,
@@ -51,7 +56,7 @@ pub(super) fn read(node: Node<'_, '_>, size: ImageSize, stated: Option<Projectio
         return Err(xml::at(at, CameraFileError::new("contradicts the type of the sensor")));
     }
     let fisheye = inside.map(|(_, projection)| projection).or(stated).flatten();
-    let (camera, notes) = frame(node, size)?;
+    let (camera, notes) = frame(node, size, options)?;
     let Some(projection) = fisheye else { return Ok((camera.into(), notes)) };
     let Agisoft { version, f, cx, cy, b1, b2, k, p, .. } = camera;
     if version != AgisoftVersion::Metashape {
@@ -66,8 +71,9 @@ pub(super) fn read(node: Node<'_, '_>, size: ImageSize, stated: Option<Projectio
 }
 
 /// The parameters as those of a frame camera, which a fisheye has alike.
-fn frame(node: Node<'_, '_>, size: ImageSize) -> Result<(Agisoft, Vec<String>), CameraFileError> {
-    let notes = unknown(node)?;
+fn frame(node: Node<'_, '_>, size: ImageSize, options: &ReadOptions) -> Result<(Agisoft, Vec<String>), CameraFileError> {
+    let elements = xml::elements(node).map(|child| (child.tag_name().name(), child));
+    let notes = options.of_lens(elements, &[&KNOWN[..], &COEFFICIENTS].concat(), xml::at)?;
     let old = xml::child(node, "fx")?.is_some();
     if let (true, Some(f)) = (old, xml::child(node, "f")?) {
         return Err(xml::at(f, CameraFileError::new("stands beside `fx`; expected `f` alone, or `fx` and `fy`")));
@@ -92,27 +98,6 @@ fn frame(node: Node<'_, '_>, size: ImageSize) -> Result<(Agisoft, Vec<String>), 
     let (fx, f) = (positive(node, "fx")?, positive(node, "fy")?);
     let (cx, cy) = (xml::required_number(node, "cx")?, xml::required_number(node, "cy")?);
     Ok((Agisoft { size, version: AgisoftVersion::PhotoScan, f, cx, cy, b1: fx - f, b2: or_zero("skew")?, k, p }, notes))
-}
-
-/// An unknown number that is not zero changes the camera; other unknown elements are noted.
-fn unknown(node: Node<'_, '_>) -> Result<Vec<String>, CameraFileError> {
-    let mut notes = Vec::new();
-    for child in xml::elements(node) {
-        let name = child.tag_name().name();
-        if KNOWN.contains(&name) || COEFFICIENTS.contains(&name) {
-            continue;
-        }
-        match child.text().map(finite) {
-            Some(Ok(value)) if value != 0.0 => {
-                return Err(xml::at(
-                    child,
-                    CameraFileError::new(format!("is {value}; no such parameter is known, and without it the camera is another")),
-                ));
-            }
-            _ => notes.push(format!("element `{}` is not known and was left out", shortened(name))),
-        }
-    }
-    Ok(notes)
 }
 
 fn refuse(node: Node<'_, '_>, names: &[&str], why: &str) -> Result<(), CameraFileError> {

@@ -1,6 +1,6 @@
 //! A camera of a file in another convention: its model, its covariance and its pose.
 
-use calibench_model::camera::{CameraModel, Ray};
+use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, Target, convert};
 use thiserror::Error;
 
@@ -58,7 +58,12 @@ pub fn converted(
     let (conversion, model) = match &goal.way {
         Way::One(_) | Way::AnyOf(_) if model.is_some() => return Err(ConversionError::ModelNamed),
         _ if let Some(splines) = &source.splines => splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
-        Way::One(Target::OpenCvFisheye) | Way::Best if model.is_none() && holds_only_as_it_is(source, goal, pitch_um) => {
+        // A fisheye was asked for: no other camera that the file holds too.
+        Way::One(Target::OpenCvFisheye) | Way::Best
+            if model.is_none()
+                && (matches!(goal.way, Way::Best) || matches!(source.camera, Camera::OpenCvFisheye(_)))
+                && holds_only_as_it_is(source, goal, pitch_um) =>
+        {
             let covariance = options.covariance.clone();
             (Conversion { covariance, ..splined::as_they_are(source.camera) }, None)
         }

@@ -4,6 +4,7 @@ use calibench_model::camera::Camera;
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Target, Verdict, convert};
 use thiserror::Error;
 
+use super::behind::{Behind, behind};
 use super::format::CameraFormat;
 use super::{NamedCamera, ParameterCovariance, PoseFrame};
 
@@ -188,7 +189,7 @@ pub fn losses(format: &CameraFormat, camera: &NamedCamera) -> Vec<String> {
     say(!pitch && camera.pitch_um.is_some(), format!("the pixel pitch, {} um", camera.pitch_um.unwrap_or(0.0)));
     let of = match camera.pose_frame {
         PoseFrame::World => "the pose",
-        PoseFrame::FirstCamera => "the pose in the rig",
+        PoseFrame::FirstCamera | PoseFrame::Rig => "the pose in the rig",
         PoseFrame::Imu => "the pose against the inertial sensor",
     };
     let posed = camera.pose.is_some_and(|pose| pose != super::Pose::IDENTITY);
@@ -200,6 +201,13 @@ pub fn losses(format: &CameraFormat, camera: &NamedCamera) -> Vec<String> {
         (0..n * n).any(|i| i / n != i % n && q.values[i] != 0.0)
     };
     say(covariance == KeptCovariance::Variances && known.is_some_and(correlated), "the correlations of the parameters".to_owned());
+    if let Some(Behind { share, elsewhere_px }) = format.half_space.then(|| behind(&camera.camera)).flatten() {
+        lost.push(format!(
+            "{:.1} % of the frame, which see rays beyond 90 degrees from the axis: {} divides by z and pictures these up to {elsewhere_px:.0} px elsewhere",
+            100.0 * share,
+            format.tool
+        ));
+    }
     if pose == KeptPose::InRig && posed && camera.pose_frame == PoseFrame::World {
         lost.push(format!("the world of the pose: {} holds poses of a rig, against each other or a sensor", format.name));
     }

@@ -59,6 +59,8 @@ pub struct CameraFormat {
     pub keeps: Keeps,
     /// Public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner.
     pub origin_is_open: bool,
+    /// Its tool divides by z: a fisheye's rays beyond 90 degrees from the axis are pictured elsewhere, or not at all.
+    pub(super) half_space: bool,
     /// It does not say whether its coefficients are Brown's or those of the division model: [`ReadOptions::lens`].
     pub lens_is_open: bool,
 }
@@ -81,6 +83,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     models: |_| Vec::new(),
     keeps: Keeps { splines: false, name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
     origin_is_open: false,
+    half_space: false,
     lens_is_open: false,
 };
 

@@ -3,6 +3,7 @@
 //! A new format is one file in [`formats`] with a `static` [`CameraFormat`], and its two lines there.
 
 mod agisoft;
+mod behind;
 mod brown;
 mod colmap_images;
 mod colmap_models;
@@ -17,12 +18,15 @@ pub mod formats;
 mod ids;
 mod json;
 mod kalibr_target;
+mod keys;
 mod lists;
 mod little_endian;
 mod number;
 mod numbering;
 pub mod open_points;
 mod opencv;
+mod opencv_model;
+mod opencv_names;
 mod opencv_storage;
 mod photogrammetric_toml;
 mod pose;
@@ -121,7 +125,7 @@ pub enum Lens {
 }
 
 /// What a file may leave open.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// Size of the images, for files that do not state it; one that contradicts the file is an error.
     pub size: Option<ImageSize>,
@@ -131,13 +135,15 @@ pub struct ReadOptions {
     pub lens: Option<Lens>,
     /// The format, where more than one recognises the file; one that does not is an error.
     pub from: Option<&'static CameraFormat>,
+    /// Keys that are left out although they may make the camera another one.
+    pub ignore: Vec<String>,
 }
 
 impl ReadOptions {
     /// What reads again a file that was written in `format` of a camera of `size`.
     pub fn of_written(format: &CameraFormat, size: ImageSize) -> Self {
         let (size, lens) = ((!format.states_size).then_some(size), format.lens_is_open.then_some(Lens::Brown));
-        Self { size, fisheye: None, lens, from: None }
+        Self { size, lens, ..Self::default() }
     }
 
     /// The size that the file states, or else the one given.

@@ -1,13 +1,15 @@
 //! OpenCV's cameras in its FileStorage: what YAML and XML share.
 //!
 //! `camera_matrix`, `distortion_coefficients`, `image_width`, `image_height`, as OpenCV's calibration sample writes them, and the capitalised
-//! names of Metashape's export. The fisheye camera is told by the sample's own `fisheye_model: 1`; without it four coefficients are a pinhole
-//! camera's, for nothing else in the file tells them apart. With `xi` it is the camera of cv2.omnidir, which is Mei's.
+//! names of Metashape's export. The fisheye camera is told by the sample's own `fisheye_model: 1` and the names that people give to it; without one four coefficients
+//! are a pinhole camera's, for nothing else in the file tells them apart. With `xi` it is the camera of cv2.omnidir, which is Mei's.
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Omni, OpenCv, OpenCvFisheye};
 use nalgebra::{DMatrix, DVector};
 
 use super::number::pixels;
+use super::opencv_model::{self, Kind, kind};
+use super::opencv_names::{Pair, pairs};
 use super::opencv_storage::Matrix;
 use super::tree::{Entry, Value};
 use super::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
@@ -18,13 +20,14 @@ const WIDTH: [&str; 6] = ["image_width", "image_Width", "Image_Width", "imageWid
 const HEIGHT: [&str; 6] = ["image_height", "image_Height", "Image_Height", "imageHeight", "img_height", "height"];
 /// Columns and rows in one value, as OpenCV's interactive calibration writes them, and others.
 const SIZE: [&str; 7] = ["cameraResolution", "calibImageSize", "image_size", "imageSize", "img_size", "Image_Size", "resolution"];
-const FISHEYE: [&str; 1] = ["fisheye_model"];
 const XI: [&str; 1] = ["xi"];
 /// Standard deviations, as OpenCV's interactive calibration writes them: of fx, fy, cx, cy and of the coefficients; and, here alone, of xi.
 const SPREADS: [&str; 3] = ["cameraMatrix_std_dev", "dist_coeffs_std_dev", "xi_std_dev"];
 const NAME: [&str; 1] = ["camera_name"];
 /// How the calibration was made, as the samples of OpenCV and Metashape say it: nothing of the camera.
-const ABOUT: [&str; 16] = [
+const ABOUT: [&str; 18] = [
+    "rms",
+    "reprojection_error",
     "calibration_time",
     "calibration_Time",
     "calibrationDate",
@@ -43,30 +46,51 @@ const ABOUT: [&str; 16] = [
     "per_view_reprojection_errors",
 ];
 
-/// The camera of a FileStorage.
+/// The cameras of a FileStorage: one under the usual names, or as many as [`pairs`] finds, each called as its matrix is.
 pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
-    let required = |names: &[&str]| root.get(names)?.ok_or_else(|| root.wrong(&format!("has no `{}`", names[0])));
-    let (name, entry) = required(&CAMERA_MATRIX)?;
-    let k = entry.matrix(9).and_then(|matrix| camera_matrix(&matrix)).map_err(|error| placed(error, name, entry))?;
-    let (name, entry) = required(&DISTORTION)?;
-    let distortion = entry.matrix(14).and_then(|matrix| vector(&matrix)).map_err(|error| placed(error, name, entry))?;
-    let size = options.size_or(stated_size(root)?)?;
-    let known = [&CAMERA_MATRIX[..], &DISTORTION, &WIDTH, &HEIGHT, &SIZE, &FISHEYE, &XI, &NAME, &SPREADS, &ABOUT].concat();
-    let mut notes = root.unknown(&known)?;
-    let (fisheye, xi) = (is_fisheye(root, options)?, mirror(root)?);
-    if !fisheye && xi.is_none() && distortion.len() == 4 && options.fisheye.is_none() && root.get(&FISHEYE)?.is_none() {
-        notes.push("four coefficients without `fisheye_model`: read as the pinhole camera's k1, k2, p1, p2".into());
-    }
-    let camera = match xi {
-        Some((_, at)) if fisheye => return Err(at.wrong("is cv2.omnidir's: no camera has it and `fisheye_model` both").of(XI[0])),
-        Some((xi, _)) => omnidirectional(size, &k, xi, &distortion),
-        None if fisheye => fisheye_camera(size, &k, &distortion),
-        None => pinhole(size, &k, &distortion),
+    let usual = (root.get(&CAMERA_MATRIX)?, root.get(&DISTORTION)?);
+    let is_usual = usual.0.is_some();
+    let pairs = match usual {
+        (Some(matrix), Some(distortion)) => vec![[matrix, distortion]],
+        (Some(_), None) => pairs(root, DISTORTION[0])?,
+        (None, _) => pairs(root, CAMERA_MATRIX[0])?,
     };
-    let camera = camera.map_err(|error| placed(error, name, entry))?;
-    let name = root.get(&NAME)?.map(|(_, entry)| entry.text()).transpose()?.unwrap_or("");
-    let covariance = spreads(root, &camera, &mut notes)?;
-    Ok(vec![NamedCamera { covariance, notes, ..NamedCamera::new(name, camera) }])
+    let size = options.size_or(stated_size(root)?)?;
+    let kind = kind(root, options)?;
+    let usual = [&CAMERA_MATRIX[..], &DISTORTION, &WIDTH, &HEIGHT, &SIZE, &XI, &NAME, &SPREADS, &ABOUT].concat();
+    let mut known: Vec<&str> = pairs.iter().flatten().map(|pair| pair.0).collect();
+    usual.into_iter().chain(opencv_model::keys()).for_each(|name| known.push(name));
+    let notes = root.of_file(&known, options)?;
+    let name = root.get(&NAME)?.map(|(_, entry)| entry.text()).transpose()?;
+    let one = |pair: &Pair<'_>| {
+        let (camera, note) = camera(root, pair, size, kind)?;
+        let mut notes: Vec<String> = notes.iter().cloned().chain(note).collect();
+        let own = if is_usual { "" } else { pair[0].0 };
+        let covariance = if is_usual { spreads(root, &camera, &mut notes)? } else { None };
+        Ok(NamedCamera { covariance, notes, ..NamedCamera::new(name.unwrap_or(own), camera) })
+    };
+    pairs.iter().map(one).collect()
+}
+
+/// The camera of a matrix and coefficients, and what was assumed of it.
+fn camera(root: &Entry, pair: &Pair<'_>, size: ImageSize, kind: Option<Kind>) -> Result<(Camera, Option<String>), CameraFileError> {
+    let [(matrix, at_matrix), (name, entry)] = *pair;
+    let k = at_matrix.matrix(9).and_then(|found| camera_matrix(&found)).map_err(|error| placed(error, matrix, at_matrix))?;
+    let distortion = entry.matrix(14).and_then(|found| vector(&found)).map_err(|error| placed(error, name, entry))?;
+    let camera = match (mirror(root)?, kind) {
+        (Some((_, at)), Some(Kind::Fisheye)) => {
+            return Err(at.wrong("is cv2.omnidir's: no camera has it and is a fisheye of cv2's both").of(XI[0]));
+        }
+        (Some((xi, _)), _) => omnidirectional(size, &k, xi, &distortion),
+        (None, Some(Kind::Omnidirectional)) => {
+            return Err(root.wrong("has no `xi`, without which it is no camera of cv2.omnidir").of(XI[0]));
+        }
+        (None, Some(Kind::Fisheye)) => fisheye_camera(size, &k, &distortion),
+        (None, _) => pinhole(size, &k, &distortion),
+    };
+    let is_open = kind.is_none() && distortion.len() == 4 && matches!(camera, Ok(Camera::OpenCv(_)));
+    let note = is_open.then(|| "four coefficients without `fisheye_model`: read as the pinhole camera's k1, k2, p1, p2".to_owned());
+    Ok((camera.map_err(|error| placed(error, name, entry))?, note))
 }
 
 /// The parameters whose standard deviations stand in each of [`SPREADS`], in its order.
@@ -188,19 +212,6 @@ fn mirror(root: &Entry) -> Result<Option<(f64, &Entry)>, CameraFileError> {
         return Err(entry.wrong(&format!("expected a number from 0, found {value}")).of(name));
     }
     Ok(Some((value, entry)))
-}
-
-fn is_fisheye(root: &Entry, options: &ReadOptions) -> Result<bool, CameraFileError> {
-    let Some((name, entry)) = root.get(&FISHEYE)? else { return Ok(options.fisheye.unwrap_or(false)) };
-    let stated = match entry.text()? {
-        "0" | "false" => false,
-        "1" | "true" => true,
-        _ => return Err(entry.wrong("expected 0 or 1").of(name)),
-    };
-    match options.fisheye {
-        Some(given) if given != stated => Err(entry.wrong("contradicts the model that was asked for").of(name)),
-        _ => Ok(stated),
-    }
 }
 
 fn pinhole(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {

@@ -14,29 +14,51 @@ pub(super) struct Matrix {
 }
 
 impl Entry {
-    /// The matrix: `rows`, `cols`, `dt` and as many numbers in `data`; at most `most`.
+    /// The matrix: `rows`, `cols` or, of OpenCV 5, `sizes`, then `dt` and as many numbers in `data`; at most `most`. One of a single dimension is a column.
     ///
     /// # Errors
-    /// A part that is missing, sides that are no whole numbers from 1, more than `most` numbers, another type than d or f, another count of numbers.
+    /// A part that is missing, sides that are no whole numbers from 1, more than two of them, more than `most` numbers, a type that is not of one number each,
+    /// another count of numbers.
     pub fn matrix(&self, most: usize) -> Result<Matrix, CameraFileError> {
         let part = |name: &str| self.get(&[name])?.ok_or_else(|| self.wrong(&format!("has no `{name}`; expected rows, cols, dt, data")));
-        let side = |name: &str| {
-            let (_, entry) = part(name)?;
-            let wrong = || entry.wrong("expected a whole number from 1").of(name);
-            entry.text()?.parse::<usize>().ok().filter(|&n| n > 0).ok_or_else(wrong)
+        let (rows, columns) = match self.key("sizes")? {
+            Some(sizes) => sizes.sides().map_err(|error| error.of("sizes"))?,
+            None => {
+                let side = |name: &str| {
+                    let (_, entry) = part(name)?;
+                    entry.text().and_then(|text| entry.side(text)).map_err(|error| error.of(name))
+                };
+                (side("rows")?, side("cols")?)
+            }
         };
-        let (rows, columns) = (side("rows")?, side("cols")?);
         let count = rows.checked_mul(columns).filter(|&count| count <= most);
         let count = count.ok_or_else(|| self.wrong(&format!("is {rows} x {columns}; expected no more than {most} numbers")))?;
         let (_, kind) = part("dt")?;
         let single = match kind.text()? {
-            "d" => false,
-            "f" => true,
-            other => return Err(kind.wrong(&format!("expected d or f, found `{}`", shortened(other))).of("dt")),
+            "d" | "u" | "c" | "w" | "s" | "i" => false,
+            "f" | "h" => true,
+            other => return Err(kind.wrong(&format!("expected d, f or one kind of whole numbers, found `{}`", shortened(other))).of("dt")),
         };
         let (_, data) = part("data")?;
         let data = data.numbers(count, &format!("{rows} x {columns}"), single).map_err(|error| error.of("data"))?;
         Ok(Matrix { rows, columns, data })
+    }
+
+    fn side(&self, text: &str) -> Result<usize, CameraFileError> {
+        text.parse::<usize>().ok().filter(|&n| n > 0).ok_or_else(|| self.wrong("expected a whole number from 1"))
+    }
+
+    /// Rows and columns of a list of sizes.
+    fn sides(&self) -> Result<(usize, usize), CameraFileError> {
+        let sides: Vec<usize> = match &self.value {
+            Value::List(items) => items.iter().map(|item| item.side(item.text()?)).collect::<Result<_, _>>()?,
+            _ => self.text()?.split_whitespace().map(|word| self.side(word)).collect::<Result<_, _>>()?,
+        };
+        match sides[..] {
+            [rows] => Ok((rows, 1)),
+            [rows, columns] => Ok((rows, columns)),
+            _ => Err(self.wrong(&format!("expected one or two sizes, found {}", sides.len()))),
+        }
     }
 
     fn numbers(&self, count: usize, shape: &str, single: bool) -> Result<Vec<f64>, CameraFileError> {

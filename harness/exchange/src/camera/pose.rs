@@ -21,6 +21,8 @@ pub enum PoseFrame {
     World,
     /// The first camera of a rig.
     FirstCamera,
+    /// A rig's own frame, in which its first camera has a pose too.
+    Rig,
     /// The inertial sensor of a rig.
     Imu,
 }

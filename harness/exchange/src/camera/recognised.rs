@@ -1,13 +1,15 @@
 //! Which format a camera file is of: all are asked, and what two of them read as different cameras is refused.
 
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, ImageSize};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, implausible};
 
 use super::source::Source;
 use super::{CameraFile, CameraFileError, CameraFormat, ReadOptions};
 
 /// Cameras that picture what one pixel sees no further apart than this, px, are one.
 const SAME_PX: f64 = 1e-6;
+/// Cameras of a list that are looked at for what no lens has.
+const MOST_DOUBTED: usize = 50;
 /// Pixels of the comparison along each side.
 const PLACES: u32 = 21;
 
@@ -67,7 +69,10 @@ fn names(formats: &[&CameraFormat]) -> String {
 }
 
 fn read(format: &'static CameraFormat, source: &Source<'_>, options: &ReadOptions) -> Read {
-    let cameras = (format.read)(source, options)?;
+    let mut cameras = (format.read)(source, options)?;
+    for named in cameras.iter_mut().take(MOST_DOUBTED) {
+        named.notes.extend(implausible(&named.camera).iter().map(ToString::to_string));
+    }
     if cameras.is_empty() {
         return Err(CameraFileError::new(format!("{} without a camera; expected at least one", format.name)));
     }

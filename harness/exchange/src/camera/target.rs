@@ -58,7 +58,7 @@ pub struct Given<'a> {
     pub base_mm: Option<f64>,
     /// Order of Pix4D's T1 and T2.
     pub order: TangentialOrder,
-    /// Where the file goes: its ending decides between YAML and XML.
+    /// Where the file goes: its ending decides between YAML, XML and JSON.
     pub output: Option<&'a Path>,
 }
 
@@ -132,8 +132,12 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
     if let Some(format) = FORMATS.iter().copied().find(|format| format.name == name && !format.models(None).is_empty()) {
         return Ok(Goal { way: Way::Best, format });
     }
-    let xml = given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")));
-    let opencv = if xml { "opencv-xml" } else { "opencv-yaml" };
+    let ends_in = |ending| given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)));
+    let opencv = match (ends_in("xml"), ends_in("json")) {
+        (true, _) => "opencv-xml",
+        (_, true) => "opencv-json",
+        _ => "opencv-yaml",
+    };
     let sensor_width = |pitch_um: f64| f64::from(given.source.camera.size().width) * pitch_um * 1e-3;
     let (target, format) = match name {
         "photogrammetric" => (Target::photogrammetric(given.pitch(name)?), "photogrammetric"),
@@ -191,7 +195,7 @@ mod tests {
         let names = TARGETS.iter().map(|(name, _)| *name).chain(FORMATS.iter().map(|format| format.name));
         let mut reached: Vec<&str> = Vec::new();
         for name in names {
-            for output in [None, Some(Path::new("c.xml"))] {
+            for output in [None, Some(Path::new("c.xml")), Some(Path::new("c.json"))] {
                 let given = Given { source: &source, pitch_um: Some(4.0), base_mm: Some(2.0), order: TangentialOrder::OpenCv, output };
                 reached.extend(goal(name, &given).ok().map(|goal| goal.format.name));
             }

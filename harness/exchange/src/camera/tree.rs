@@ -175,15 +175,6 @@ impl Entry {
             other => Err(entry.wrong(&format!("expected columns and rows, found {} values", other.len())).of(name)),
         }
     }
-
-    /// A note on all names that are not among `known`, if there are any.
-    ///
-    /// # Errors
-    /// An entry without names.
-    pub fn unknown(&self, known: &[&str]) -> Result<Vec<String>, CameraFileError> {
-        let names = self.entries()?.iter().map(|(name, _)| name.as_str());
-        Ok(all_left_out(names.filter(|name| !known.contains(name))))
-    }
 }
 
 /// `entries` as a map; a name that stands twice is a mistake.

@@ -1,12 +1,12 @@
 //! A camera, and a camera file, as JSON.
 
 use calibench_exchange::camera::{CameraFile, NamedCamera, ParameterCovariance, PoseFrame};
-use calibench_model::camera::{CameraModel, CameraParameter, Convention, Verification, fold};
+use calibench_model::camera::{CameraModel, CameraParameter, Convention, Verification, fold, without_ray};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Answer, Size};
-use crate::camera_card::{Corner, corners, sigma, view, without_ray};
+use crate::camera_card::{Corner, corners, sigma, view};
 
 /// What is in a camera file.
 #[derive(Serialize, JsonSchema)]
@@ -140,7 +140,7 @@ impl Covariance {
 struct Pose {
     /// Projection centre, in the file's unit.
     position: [f64; 3],
-    /// In whose axes: `world`, `first camera` or `imu`.
+    /// In whose axes: `world`, `first camera`, `rig` or `imu`.
     frame: String,
 }
 
@@ -152,6 +152,7 @@ impl CameraAnswer {
         let frame = match pose_frame {
             PoseFrame::World => "world",
             PoseFrame::FirstCamera => "first camera",
+            PoseFrame::Rig => "rig",
             PoseFrame::Imu => "imu",
         };
         Self {

@@ -58,14 +58,14 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         let [width, height] = size.items()? else { return Err(size.wrong("expected columns and rows").of("resolution")) };
         let side = |side: &Entry| crate::camera::number::pixels(side.text()?).map_err(|error| error.on_line(side.line).of("resolution"));
         let size = options.size_or(Some(ImageSize { width: side(width)?, height: side(height)? }))?;
-        let mut named = camera(entry, size).map_err(|error| error.in_key(&format!("intrinsics[{index}]")))?;
+        let mut named = camera(entry, size, options).map_err(|error| error.in_key(&format!("intrinsics[{index}]")))?;
         if let Some(poses) = poses {
             (named.pose, named.pose_frame) = (Some(pose(&poses[index])?), PoseFrame::Imu);
         }
         cameras.push(named);
     }
-    let mut notes = tree.unknown(&["value0"])?;
-    notes.extend(root.unknown(&["T_imu_cam", "intrinsics", "resolution"])?);
+    let mut notes = tree.of_file(&["value0"], options)?;
+    notes.extend(root.of_file(&["T_imu_cam", "intrinsics", "resolution"], options)?);
     Ok(noted(cameras, &notes))
 }
 
@@ -75,7 +75,7 @@ fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {
     Pose::of_camera_to_world(rotation, [value("px")?, value("py")?, value("pz")?])
 }
 
-fn camera(entry: &Entry, size: ImageSize) -> Result<NamedCamera, CameraFileError> {
+fn camera(entry: &Entry, size: ImageSize, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
     let kind = entry.text_of("camera_type")?;
     let values = entry.required("intrinsics")?;
     let v = |name| values.number_of(name);
@@ -106,8 +106,8 @@ fn camera(entry: &Entry, size: ImageSize) -> Result<NamedCamera, CameraFileError
         }
     };
     let known = [&["fx", "fy", "cx", "cy"], own].concat();
-    let mut notes = entry.unknown(&["camera_type", "intrinsics"])?;
-    notes.extend(values.unknown(&known)?);
+    let mut notes = entry.of_lens(&["camera_type", "intrinsics"], options)?;
+    notes.extend(values.of_lens(&known, options)?);
     Ok(NamedCamera { notes, ..NamedCamera::new("", camera) })
 }
 

@@ -10,7 +10,6 @@ use crate::camera::brown::{Brown, middle, positive};
 use crate::camera::fit::{Keeps, Model};
 use crate::camera::number::{finite, pixels, shortened, shortest};
 use crate::camera::source::Source;
-use crate::camera::tree::all_left_out;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -81,15 +80,15 @@ fn camera(group: Node<'_, '_>, options: &ReadOptions) -> Result<NamedCamera, Cam
     let name = xml::child(group, "Name")?.map_or(Ok(""), xml::text)?;
     let mut notes: Vec<String> = Vec::new();
     if let Some(distortion) = xml::child(group, "Distortion")? {
-        let names = xml::elements(distortion).map(|node| node.tag_name().name());
-        notes.extend(all_left_out(names.filter(|name| !["K1", "K2", "K3", "P1", "P2"].contains(name))));
+        let names = xml::elements(distortion).map(|node| (node.tag_name().name(), node));
+        notes.extend(options.of_lens(names, &["K1", "K2", "K3", "P1", "P2"], xml::at)?);
     }
     let photos = xml::elements(group).filter(|node| node.has_tag_name("Photo")).count();
     if photos > 0 {
         notes.push(format!("{photos} photos with their poses were left out"));
     }
-    let others = xml::elements(group).map(|node| node.tag_name().name()).filter(|name| !KNOWN.contains(name) && *name != "Photo");
-    notes.extend(all_left_out(others));
+    let others = xml::elements(group).map(|node| (node.tag_name().name(), node));
+    notes.extend(options.of_file(others.filter(|(name, _)| !KNOWN.contains(name) && *name != "Photo"), xml::at)?);
     let pitch_um = per_mm.map(|per_mm| 1e3 / per_mm);
     Ok(NamedCamera { pitch_um, notes, ..NamedCamera::new(name, brown.camera()) })
 }

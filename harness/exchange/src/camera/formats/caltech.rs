@@ -8,7 +8,6 @@ use crate::camera::brown::{Brown, positive};
 use crate::camera::fit::{Keeps, KeptCovariance, Model};
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::source::Source;
-use crate::camera::tree::all_left_out;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -112,7 +111,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         notes.push("the poses of the calibration images were left out".into());
     }
     let of_images = |key: &str| ["omc_", "Tc_"].iter().any(|start| key.starts_with(start));
-    notes.extend(all_left_out(statements(source).map(|(_, key, _)| key).filter(|key| !KNOWN.contains(key) && !of_images(key))));
+    let unknown = statements(source).filter(|(_, key, _)| !KNOWN.contains(key) && !of_images(key)).map(|(line, key, _)| (key, line));
+    notes.extend(options.of_file(unknown, |line, error| error.on_line(line))?);
     Ok(vec![NamedCamera { covariance, notes, ..NamedCamera::new("", camera) }])
 }
 

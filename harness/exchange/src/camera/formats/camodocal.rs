@@ -73,12 +73,12 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         }
     };
     let name = root.key("camera_name")?.map_or(Ok(""), Entry::text)?;
-    let mut notes = root.unknown(&KNOWN)?;
+    let mut notes = root.of_file(&KNOWN, options)?;
     for (group, known) in parts(&camera).map_or(Vec::new(), |(_, groups)| groups) {
         let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-        notes.extend(
-            root.key(group)?.map_or(Ok(Vec::new()), |entry| entry.unknown(&names))?.into_iter().map(|note| format!("of {group}, {note}")),
-        );
+        let of_group =
+            root.key(group)?.map_or(Ok(Vec::new()), |entry| entry.of_lens(&names, options)).map_err(|error| error.in_key(group))?;
+        notes.extend(of_group.into_iter().map(|note| format!("of {group}, {note}")));
     }
     Ok(vec![NamedCamera { notes, ..NamedCamera::new(name, camera) }])
 }

@@ -25,6 +25,7 @@ pub(in crate::camera) static FORMAT: CameraFormat = CameraFormat {
     convention: Some(&tool_conventions::COLMAP),
     models: colmap_models::models,
     keeps: Keeps { name: true, ..PLAIN.keeps },
+    half_space: true,
     ..PLAIN
 };
 

@@ -39,7 +39,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     ..PLAIN
 };
 
-const KNOWN: [&str; 9] = [
+const KNOWN: [&str; 10] = [
     "camera_model",
     "intrinsics",
     "distortion_model",
@@ -48,8 +48,9 @@ const KNOWN: [&str; 9] = [
     "rostopic",
     "T_cn_cnm1",
     "T_cam_imu",
-    // Which cameras see the same: nothing of a camera.
+    // Which cameras see the same, and when against the inertial sensor: nothing of a camera.
     "cam_overlaps",
+    "timeshift_cam_imu",
 ];
 /// Largest difference of the two ways by which a rig's poses may be stated that passes without a word.
 const AGREE: f64 = 1e-6;
@@ -73,14 +74,16 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
             named.name.clone_from(&key);
         }
         let above = format!("T_cam{index}_cam{}", index.max(1) - 1);
-        let step = if index == 0 { None } else { entry.key("T_cn_cnm1")?.or(root.key(&above)?) };
+        // That of the first camera is out of the rig's own frame.
+        let beside = if index == 0 { None } else { root.key(&above)? };
+        let step = entry.key("T_cn_cnm1")?.or(beside);
         chain.push(step.map(pose).transpose().map_err(at)?);
         against_imu.push(entry.key("T_cam_imu")?.map(pose).transpose().map_err(at)?);
         cameras.push(named);
         used.extend([key, above]);
     }
     let used: Vec<&str> = used.iter().map(String::as_str).collect();
-    let unknown = root.unknown(&used)?;
+    let unknown = root.of_file(&used, options)?;
     place(&mut cameras, &chain, &against_imu);
     Ok(noted(cameras, &unknown))
 }
@@ -107,15 +110,17 @@ fn place(cameras: &mut [NamedCamera], chain: &[Option<Pose>], against_imu: &[Opt
         }
         return;
     }
-    let mut last = Some(Pose::IDENTITY);
+    let first = chain.first().copied().flatten();
+    let frame = if first.is_some() { PoseFrame::Rig } else { PoseFrame::FirstCamera };
+    let mut last = Some(first.unwrap_or(Pose::IDENTITY));
     for (index, (camera, step)) in cameras.iter_mut().zip(chain).enumerate() {
         if index > 0 {
             last = step.zip(last).map(|(step, last)| step.out_of(&last));
         }
-        camera.pose_frame = PoseFrame::FirstCamera;
+        camera.pose_frame = frame;
         camera.pose = last;
     }
-    if cameras.len() == 1 || cameras[1..].iter().all(|camera| camera.pose.is_none()) {
+    if first.is_none() && cameras[1..].iter().all(|camera| camera.pose.is_none()) {
         // One camera without another has no pose.
         cameras.iter_mut().for_each(|camera| (camera.pose, camera.pose_frame) = (None, PoseFrame::World));
     }
@@ -173,7 +178,9 @@ fn camera(entry: &Entry, options: &ReadOptions) -> Result<NamedCamera, CameraFil
         }
     };
     let name = entry.key("rostopic")?.map_or(Ok(""), Entry::text)?;
-    Ok(NamedCamera { notes: entry.unknown(&KNOWN)?, ..NamedCamera::new(name, camera) })
+    let mut notes = entry.of_lens(&KNOWN, options)?;
+    notes.extend(entry.key("timeshift_cam_imu")?.map(|_| left_out("timeshift_cam_imu")));
+    Ok(NamedCamera { notes, ..NamedCamera::new(name, camera) })
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
@@ -190,7 +197,8 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
         if let Some(pose) = named.pose.filter(|_| named.pose_frame == PoseFrame::Imu) {
             out.push_str(&transformation("T_cam_imu", &pose));
         }
-        let before = index.checked_sub(1).and_then(|i| cameras[i].pose);
+        let origin = (named.pose_frame == PoseFrame::Rig).then_some(Pose::IDENTITY);
+        let before = index.checked_sub(1).map_or(origin, |i| cameras[i].pose);
         if let Some((pose, before)) = named.pose.zip(before) {
             out.push_str(&transformation("T_cn_cnm1", &pose.seen_from(&before)));
         }

@@ -25,6 +25,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     convention: Some(&tool_conventions::KAPTURE),
     models: colmap_models::classic_models,
     keeps: Keeps { name: true, ..PLAIN.keeps },
+    half_space: true,
     ..PLAIN
 };
 

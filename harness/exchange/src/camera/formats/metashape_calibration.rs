@@ -26,7 +26,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let Some(document) = &source.xml else { return Ok(Vec::new()) };
     let root = document.root_element();
     let size = options.size_or(Some(xml::size_of_children(root)?)).map_err(|error| xml::at(root, error))?;
-    let (camera, mut notes) = agisoft::read(root, size, None)?;
+    let (camera, mut notes) = agisoft::read(root, size, None, options)?;
     if matches!(camera, Camera::Agisoft(Agisoft { version: AgisoftVersion::PhotoScan | AgisoftVersion::Lens, .. })) {
         notes.push("read as PhotoScan's before 1.2; Lens writes the same elements, with the same formulas".into());
     }

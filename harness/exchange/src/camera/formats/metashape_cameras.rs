@@ -65,7 +65,7 @@ fn sensor(node: Node<'_, '_>, options: &ReadOptions) -> Result<Option<NamedCamer
         None => xml::required(node, "resolution")?,
     };
     let size = options.size_or(Some(xml::size_of_attributes(resolution)?)).map_err(|error| xml::at(resolution, error))?;
-    let (camera, mut notes) = agisoft::read(calibration, size, own.or(of_sensor))?;
+    let (camera, mut notes) = agisoft::read(calibration, size, own.or(of_sensor), options)?;
     if calibration.attribute("class") == Some("initial") {
         notes.push("holds the initial calibration only, not an adjusted one".into());
     }

@@ -9,7 +9,6 @@ use crate::camera::brown::positive;
 use crate::camera::fit::{Keeps, Model};
 use crate::camera::number::{finite, numbers, scientific, shortened};
 use crate::camera::source::Source;
-use crate::camera::tree::all_left_out;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -64,14 +63,14 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     if let Some(model) = models.next() {
         distortion(model, &mut camera)?;
         let parts = ["P1", "P2", "b1", "b2", "RadialePart", "CDist", "CoeffDist", "CoeffDistInv"];
-        let all = model.descendants().filter(|node| node.is_element() && *node != model).map(|node| node.tag_name().name());
-        notes.extend(all_left_out(all.filter(|name| !parts.contains(name))));
+        let all = model.descendants().filter(|node| node.is_element() && *node != model).map(|node| (node.tag_name().name(), node));
+        notes.extend(options.of_lens(all, &parts, xml::at)?);
     }
     if let Some(second) = models.next() {
         return Err(xml::at(second, CameraFileError::new("stands after another distortion; expected one")));
     }
-    let others = xml::elements(node).map(|child| child.tag_name().name()).filter(|name| !KNOWN.contains(name));
-    notes.extend(all_left_out(others));
+    let others = xml::elements(node).map(|child| (child.tag_name().name(), child)).filter(|(name, _)| !KNOWN.contains(name));
+    notes.extend(options.of_file(others, xml::at)?);
     if let Some(radius) = xml::number(node, "RayonUtile")? {
         notes.push(format!("`RayonUtile`, the calibration's own limit of {radius} px, was left out: restrict fits by a radius"));
     }

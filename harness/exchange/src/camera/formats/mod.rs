@@ -15,6 +15,7 @@ mod metashape_cameras;
 mod micmac;
 pub(super) mod mrcal;
 mod nerfstudio;
+mod opencv_json;
 mod opencv_xml;
 mod opencv_yaml;
 mod openmvg;
@@ -28,6 +29,7 @@ pub mod pix4d_pmatrix;
 mod reality_capture;
 mod reality_scan_csv;
 mod ros;
+mod ros_message;
 mod theia;
 
 /// The worked example of CONTRIBUTING, linked from `examples/`.
@@ -43,9 +45,11 @@ pub static FORMATS: &[&CameraFormat] = &[
     &photogrammetric::FORMAT,
     &camodocal::FORMAT,
     &ros::FORMAT,
+    &ros_message::FORMAT,
     &kalibr::FORMAT,
     &opencv_yaml::FORMAT,
     &opencv_xml::FORMAT,
+    &opencv_json::FORMAT,
     &metashape_calibration::FORMAT,
     &metashape_cameras::FORMAT,
     &photoscan_cameras::FORMAT,

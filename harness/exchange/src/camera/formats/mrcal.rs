@@ -16,7 +16,7 @@ use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOption
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "mrcal",
     tool: "mrcal",
-    versions: ".cameramodel of 1 and 2",
+    versions: ".cameramodel of 1 and 2, to 2.5",
     extension: "cameramodel",
     verified: Some("mrcal 2.2 reads what is written and projects alike, models to 1e-8 px and splines to 1e-6 px"),
     recognise: |source| {
@@ -53,7 +53,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let intrinsics = root.required("intrinsics")?;
     let v = intrinsics.row().map_err(|error| error.of("intrinsics"))?;
     let at = |error: CameraFileError| error.on_line(intrinsics.line).of("intrinsics");
-    let (mut notes, mut splines) = (root.unknown(&KNOWN)?, None);
+    let (mut notes, mut splines) = (root.of_file(&KNOWN, options)?, None);
     let camera = match model.strip_prefix(SPLINED) {
         Some(shape) => {
             let spline = splined(shape, size, &v).map_err(|error| error.on_line(entry.line).of(key))?;
@@ -69,8 +69,16 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 }
 
 fn pose(root: &Entry) -> Result<Option<Pose>, CameraFileError> {
-    let Some((name, entry)) = root.get(&["extrinsics", "rt_cam_ref"])? else { return Ok(None) };
+    // 2.5 writes the older name beside its own.
+    let (new, old) =
+        (root.key("rt_cam_ref")?.map(|entry| ("rt_cam_ref", entry)), root.key("extrinsics")?.map(|entry| ("extrinsics", entry)));
+    let Some((name, entry)) = new.or(old) else { return Ok(None) };
     let [a, b, c, x, y, z] = root.row_of(name)?;
+    if let (Some(_), Some((other, at))) = (new, old)
+        && root.row_of(other)? != [a, b, c, x, y, z]
+    {
+        return Err(at.wrong(&format!("says another pose than `{name}`")).of(other));
+    }
     Pose::of_rt(of_rotation_vector([a, b, c]), [x, y, z]).map(Some).map_err(|error| error.on_line(entry.line).of(name))
 }
 

@@ -12,7 +12,6 @@ use crate::camera::number::{row, shortened, shortest};
 use crate::camera::pose::rigid;
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::tree::all_left_out;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -37,16 +36,33 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         ]
     },
     keeps: Keeps { name: true, pose: KeptPose::InWorld, ..PLAIN.keeps },
+    half_space: true,
     ..PLAIN
 };
 
-const INTRINSICS: [&str; 15] =
-    ["camera_model", "fl_x", "fl_y", "cx", "cy", "w", "h", "k1", "k2", "k3", "k4", "p1", "p2", "camera_angle_x", "camera_angle_y"];
+const INTRINSICS: [&str; 16] = [
+    "camera_model",
+    "is_fisheye",
+    "fl_x",
+    "fl_y",
+    "cx",
+    "cy",
+    "w",
+    "h",
+    "k1",
+    "k2",
+    "k3",
+    "k4",
+    "p1",
+    "p2",
+    "camera_angle_x",
+    "camera_angle_y",
+];
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let root = json::json(source.text)?;
     let frames = root.key("frames")?.map_or(Ok(&[][..]), Entry::items)?;
-    let unknown = root.unknown(&[&INTRINSICS[..], &["frames"]].concat())?;
+    let unknown = root.of_file(&[&INTRINSICS[..], &["frames"]].concat(), options)?;
     if frames.is_empty() {
         let camera = camera(&[&root], options)?;
         return Ok(vec![NamedCamera { notes: unknown, ..NamedCamera::new("", camera) }]);
@@ -60,13 +76,14 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         cameras.push(NamedCamera { pose, ..NamedCamera::new(name, camera) });
     }
     let known = [&INTRINSICS[..], &["file_path", "transform_matrix"]].concat();
-    let mut others: Vec<&str> = Vec::new();
+    let mut others: Vec<(&str, usize)> = Vec::new();
     for frame in frames {
-        others.extend(frame.entries()?.iter().map(|(name, _)| name.as_str()).filter(|name| !known.contains(name)));
+        let names = frame.entries()?.iter().map(|(name, entry)| (name.as_str(), entry.line));
+        others.extend(names.filter(|(name, _)| !known.contains(name)));
     }
     others.sort_unstable();
-    others.dedup();
-    let more = all_left_out(others.into_iter());
+    others.dedup_by_key(|(name, _)| *name);
+    let more = options.of_file(others.into_iter(), |line, error| error.on_line(line))?;
     let more: Vec<String> = more.into_iter().map(|note| format!("of frames, {note}")).collect();
     Ok(noted(noted(cameras, &unknown), &more))
 }
@@ -105,7 +122,17 @@ fn camera(places: &[&Entry], options: &ReadOptions) -> Result<Camera, CameraFile
     let PixelPoint { x: cx, y: cy } = corner.to_pixel();
     let k = [or_zero("k1")?, or_zero("k2")?, or_zero("k3")?, or_zero("k4")?];
     let model = find("camera_model")?;
-    match model.map_or(Ok("OPENCV"), Entry::text)? {
+    // instant-ngp's word for the same.
+    let fisheye = find("is_fisheye")?.map(|entry| is_fisheye(entry).map(|fisheye| (fisheye, entry))).transpose()?;
+    let name = match (model, fisheye) {
+        (None, Some((true, _))) => "OPENCV_FISHEYE",
+        (None, _) => "OPENCV",
+        (Some(model), _) => model.text()?,
+    };
+    if let Some((_, entry)) = fisheye.filter(|(fisheye, _)| *fisheye != (name == "OPENCV_FISHEYE")) {
+        return Err(entry.wrong(&format!("contradicts `camera_model`, {}", shortened(name))).of("is_fisheye"));
+    }
+    match name {
         "OPENCV_FISHEYE" => Ok(OpenCvFisheye { size, fx, fy, cx, cy, skew: 0.0, k }.into()),
         "OPENCV" | "PINHOLE" | "SIMPLE_PINHOLE" | "SIMPLE_RADIAL" | "RADIAL" => {
             Ok(Brown { k, p1: or_zero("p1")?, p2: or_zero("p2")?, ..Brown::plain(size, [fx, fy, cx, cy]) }.camera())
@@ -114,6 +141,14 @@ fn camera(places: &[&Entry], options: &ReadOptions) -> Result<Camera, CameraFile
             let problem = format!("`{}` is not known; expected OPENCV, OPENCV_FISHEYE or PINHOLE", shortened(other));
             Err(model.unwrap_or(places[0]).wrong(&problem).of("camera_model"))
         }
+    }
+}
+
+fn is_fisheye(entry: &Entry) -> Result<bool, CameraFileError> {
+    match entry.text()? {
+        "true" | "1" => Ok(true),
+        "false" | "0" => Ok(false),
+        _ => Err(entry.wrong("expected true or false").of("is_fisheye")),
     }
 }
 

@@ -23,6 +23,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::Variances },
+    half_space: true,
     ..PLAIN
 };
 

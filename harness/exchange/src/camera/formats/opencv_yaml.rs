@@ -21,6 +21,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::Variances },
+    half_space: true,
     ..PLAIN
 };
 
@@ -31,7 +32,7 @@ const MOST_DEPTH: usize = 32;
 
 fn recognise(source: &Source<'_>) -> Result<(), String> {
     let has = |key: &str| source.text.lines().any(|line| line.starts_with(key));
-    let tagged = source.text.contains("!!opencv-matrix");
+    let tagged = source.text.contains("!!opencv-matrix") || source.text.contains("!!opencv-nd-matrix");
     if source.xml.is_some() || !(tagged || source.text.starts_with("%YAML")) {
         return Err("neither a `%YAML` line at the top nor a `!!opencv-matrix`".into());
     }

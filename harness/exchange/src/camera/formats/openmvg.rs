@@ -67,7 +67,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         cameras.push(named);
     }
     let posed = root.key("extrinsics")?.map_or(Ok(0), |entry| entry.items().map(<[Entry]>::len))?;
-    let mut notes = root.unknown(&KNOWN)?;
+    let mut notes = root.of_file(&KNOWN, options)?;
     notes.extend((posed > 0).then(|| format!("`extrinsics`, {posed} poses of images, were left out")));
     Ok(noted(cameras, &notes))
 }
@@ -109,9 +109,9 @@ fn camera(model: &str, data: &Entry, options: &ReadOptions) -> Result<NamedCamer
         }
     };
     let of_base = ["width", "height", "focal_length", "principal_point"];
-    let mut notes = data.unknown(&[&of_base[..], &["value0", own]].concat())?;
+    let mut notes = data.of_lens(&[&of_base[..], &["value0", own]].concat(), options)?;
     if data.key("value0")?.is_some() {
-        notes.extend(base.unknown(&of_base)?);
+        notes.extend(base.of_lens(&of_base, options)?);
     }
     Ok(NamedCamera { notes, ..NamedCamera::new("", camera) })
 }

@@ -79,7 +79,7 @@ fn camera(name: &str, entry: &Entry, options: &ReadOptions) -> Result<NamedCamer
     } else {
         Brown { k, p1: v("p1")?, p2: v("p2")?, ..Brown::plain(size, [fx, fy, cx, cy]) }.camera()
     };
-    let notes = entry.unknown(&[names, &["projection_type", "width", "height"]].concat())?;
+    let notes = entry.of_lens(&[names, &["projection_type", "width", "height"]].concat(), options)?;
     Ok(NamedCamera { notes, ..NamedCamera::new(name, camera) })
 }
 

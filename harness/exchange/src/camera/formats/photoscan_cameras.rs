@@ -50,7 +50,7 @@ fn camera(node: Node<'_, '_>, options: &ReadOptions) -> Result<NamedCamera, Came
         }
     }
     let size = options.size_or(Some(size)).map_err(|error| xml::at(calibration, error))?;
-    let (camera, notes) = agisoft::read(calibration, size, None)?;
+    let (camera, notes) = agisoft::read(calibration, size, None, options)?;
     let pose = xml::child(node, "transform")?.map(pose).transpose()?;
     Ok(NamedCamera { pose, notes, ..NamedCamera::new(name, camera) })
 }

@@ -8,7 +8,6 @@ use crate::camera::fit::{Keeps, KeptPose};
 use crate::camera::number::{finite, numbers, shortened, shortest};
 use crate::camera::reality_scan::{self, Coefficients, DIVISION, Lengths};
 use crate::camera::source::Source;
-use crate::camera::tree::all_left_out;
 use crate::camera::{CameraFileError, CameraFormat, Lens, NamedCamera, Pose, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -105,7 +104,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let lens = lens(value(node, "DistortionModel")?.unwrap_or("perspective"), &d).map_err(|(error, name)| at(error, name))?;
     let camera = reality_scan::camera(size, &lengths, &d, lens).map_err(|error| at(error, "DistortionModel"))?;
     let assumed = (lens == Lens::Division).then(|| DIVISION.to_owned());
-    let notes = assumed.into_iter().chain(unknown(node)).collect();
+    let notes = assumed.into_iter().chain(unknown(node, options)?).collect();
     Ok(vec![NamedCamera { pose: pose(node)?, notes, ..NamedCamera::new("", camera) }])
 }
 
@@ -139,10 +138,11 @@ fn pose(node: Node<'_, '_>) -> Result<Option<Pose>, CameraFileError> {
     Ok(Some(Pose { camera_from_world: r, position }))
 }
 
-fn unknown(node: Node<'_, '_>) -> Vec<String> {
+fn unknown(node: Node<'_, '_>, options: &ReadOptions) -> Result<Vec<String>, CameraFileError> {
     let attributes = node.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.name());
     let elements = xml::elements(node).map(|child| child.tag_name().name());
-    all_left_out(attributes.chain(elements).filter(|name| !KNOWN.contains(name)))
+    let others = attributes.chain(elements).filter(|name| !KNOWN.contains(name)).map(|name| (name, ()));
+    options.of_file(others, |(), error| xml::at(node, error.clone()).of(error.element.unwrap_or_default()))
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {

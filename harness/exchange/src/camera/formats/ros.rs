@@ -31,6 +31,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         ]
     },
     keeps: Keeps { name: true, ..PLAIN.keeps },
+    half_space: true,
     ..PLAIN
 };
 
@@ -57,28 +58,37 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let root = tree(source.text)?;
     let size = options.size_or(Some(root.size_of("image_width", "image_height")?))?;
     let k: [f64; 9] = matrix(&root, "camera_matrix")?;
-    let lower = k[3] == 0.0 && k[6..] == [0.0, 0.0, 1.0];
-    if !lower || k[1] != 0.0 {
-        return Err(root.required("camera_matrix")?.wrong("expected fx, 0, cx; 0, fy, cy; 0, 0, 1").of("camera_matrix"));
-    }
-    positive("camera_matrix", k[0])?;
-    positive("camera_matrix", k[4])?;
+    check("camera_matrix", root.required("camera_matrix")?, &k)?;
     let entry = root.required("distortion_coefficients")?;
     let d = entry.required("data").and_then(Entry::row).map_err(|error| error.of("distortion_coefficients"))?;
     let model = root.text_of("distortion_model")?;
-    let camera = camera(model, size, [k[0], k[4], k[2], k[5]], &d);
+    let camera = of_model(model, size, [k[0], k[4], k[2], k[5]], &d);
     let camera = camera.map_err(|error| error.on_line(entry.line).of("distortion_coefficients"))?;
-    let mut notes = root.unknown(&KNOWN)?;
-    notes.extend(rectified(&root, &k)?);
+    let mut notes = root.of_file(&KNOWN, options)?;
+    let rectification = root.key("rectification_matrix")?.map(|_| matrix(&root, "rectification_matrix")).transpose()?;
+    let projection = root.key("projection_matrix")?.map(|_| matrix(&root, "projection_matrix")).transpose()?;
+    notes.extend(rectified(["rectification_matrix", "projection_matrix"], &k, rectification, projection));
     let name = root.key("camera_name")?.map(Entry::text).transpose()?.unwrap_or("");
     Ok(vec![NamedCamera { notes, ..NamedCamera::new(name, camera) }])
+}
+
+/// Whether `k`, of the entry called `name`, is a camera matrix without a skew.
+pub(super) fn check(name: &str, entry: &Entry, k: &[f64; 9]) -> Result<(), CameraFileError> {
+    let lower = k[3] == 0.0 && k[6..] == [0.0, 0.0, 1.0];
+    if !lower || k[1] != 0.0 {
+        return Err(entry.wrong("expected fx, 0, cx; 0, fy, cy; 0, 0, 1").of(name));
+    }
+    positive(name, k[0])?;
+    positive(name, k[4])?;
+    Ok(())
 }
 
 fn matrix<const N: usize>(root: &Entry, name: &str) -> Result<[f64; N], CameraFileError> {
     root.required(name)?.row_of::<N>("data").map_err(|error| error.of(name))
 }
 
-fn camera(model: &str, size: ImageSize, [fx, fy, cx, cy]: [f64; 4], d: &[f64]) -> Result<Camera, CameraFileError> {
+/// The camera of a distortion model and its coefficients.
+pub(super) fn of_model(model: &str, size: ImageSize, [fx, fy, cx, cy]: [f64; 4], d: &[f64]) -> Result<Camera, CameraFileError> {
     let wrong = |expected: &str| Err(CameraFileError::new(format!("expected {expected} coefficients for {model}, found {}", d.len())));
     match (model, d.len()) {
         ("plumb_bob", 4 | 5) | ("rational_polynomial", 8 | 12 | 14) | ("plumb_bob" | "", 0) => {
@@ -97,26 +107,21 @@ fn camera(model: &str, size: ImageSize, [fx, fy, cx, cy]: [f64; 4], d: &[f64]) -
     }
 }
 
-/// What the file says of the rectified image, which is another camera's.
-fn rectified(root: &Entry, k: &[f64; 9]) -> Result<Vec<String>, CameraFileError> {
+/// What is said of the rectified image, which is another camera's, under these names.
+pub(super) fn rectified([of_r, of_p]: [&str; 2], k: &[f64; 9], r: Option<[f64; 9]>, p: Option<[f64; 12]>) -> Vec<String> {
     let mut notes = Vec::new();
-    if root.key("rectification_matrix")?.is_some() {
-        let r: [f64; 9] = matrix(root, "rectification_matrix")?;
-        if r != [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0] {
-            notes.push(left_out("rectification_matrix"));
-        }
+    if r.is_some_and(|r| r != [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]) {
+        notes.push(left_out(of_r));
     }
-    if root.key("projection_matrix")?.is_some() {
-        let p: [f64; 12] = matrix(root, "projection_matrix")?;
+    if let Some(p) = p {
         if p[3] != 0.0 && p[0] != 0.0 {
-            notes.push(format!("`projection_matrix` says a stereo baseline of {}: left out", -p[3] / p[0]));
+            notes.push(format!("`{of_p}` says a stereo baseline of {}: left out", -p[3] / p[0]));
         }
-        let same = p[..3] == k[..3] && p[4..7] == k[3..6];
-        if !same {
-            notes.push("`projection_matrix` is that of the rectified image, not of this one: left out".into());
+        if p[..3] != k[..3] || p[4..7] != k[3..6] {
+            notes.push(format!("`{of_p}` is that of the rectified image, not of this one: left out"));
         }
     }
-    Ok(notes)
+    notes
 }
 
 /// What a camera without a name is called.

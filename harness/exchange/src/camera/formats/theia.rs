@@ -60,7 +60,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         camera(prior.required("CameraIntrinsicsPrior")?, options).map_err(|error| error.in_key(&format!("priors[{index}]")))
     };
     let cameras = priors.map(camera).collect::<Result<_, _>>()?;
-    Ok(noted(cameras, &root.unknown(&["priors"])?))
+    Ok(noted(cameras, &root.of_file(&["priors"], options)?))
 }
 
 fn camera(prior: &Entry, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
@@ -97,7 +97,7 @@ fn camera(prior: &Entry, options: &ReadOptions) -> Result<NamedCamera, CameraFil
         _ => Brown { skew, k, p1: p(0), p2: p(1), ..Brown::plain(size, [fx, fy, cx, cy]) }.camera(),
     };
     let name = prior.key("image_name")?.map_or(Ok(""), Entry::text)?;
-    Ok(NamedCamera { notes: prior.unknown(&KNOWN)?, ..NamedCamera::new(name, camera) })
+    Ok(NamedCamera { notes: prior.of_lens(&KNOWN, options)?, ..NamedCamera::new(name, camera) })
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {

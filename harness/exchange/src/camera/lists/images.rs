@@ -35,7 +35,7 @@ impl Beside {
             Stop::Whole(why) => Stop::Whole(format!("{}: {why}", path.display())),
         })?;
         places.sort_unstable();
-        Ok(Self { path, options: *options, is_text, places })
+        Ok(Self { path, options: options.clone(), is_text, places })
     }
 
     pub fn format(&self) -> &'static CameraFormat {

@@ -87,7 +87,7 @@ impl CameraList {
 
     fn looked_at(path: &Path, options: &ReadOptions) -> Result<Self, Stop> {
         let head = head(path)?;
-        let list = |kind, count| Self { path: path.to_owned(), options: *options, kind, count, own_numbers: true };
+        let list = |kind, count| Self { path: path.to_owned(), options: options.clone(), kind, count, own_numbers: true };
         // Images are known before cameras, as where all is read.
         if colmap_images::are_in_bytes(&head) {
             return list(Kind::ImagesBytes(Beside::of(path, options)?), 0).with_images();

@@ -31,7 +31,8 @@ const OURS: &str = "format = \"calibench-camera\"\nversion = 1\nmodel = \"photog
     [interior_orientation]\nc_mm = 20.0\nx0_mm = 0.1\ny0_mm = 0.2\n";
 const ALL: [&str; 9] = [YAML, OPENCV, METASHAPE, OLD, DOCUMENT, CAM, INPHO, PARAMETERS, OURS];
 
-const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, lens: None, from: None };
+const SIZE: ReadOptions =
+    ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, lens: None, from: None, ignore: Vec::new() };
 
 #[test]
 fn the_samples_are_read() {
@@ -44,7 +45,7 @@ fn the_samples_are_read() {
 
 /// Sample, what is replaced, by what, and what the error must say.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str, &str, &str); 47] = [
+const MISTAKES: [(&str, &str, &str, &str); 46] = [
     (YAML, "500., 0.,", "500.,", "f:9, `camera_matrix.data`: expected 9 numbers for 3 x 3, found 8"),
     (YAML, "rows: 5", "rows: 6", "f:14, `distortion_coefficients.data`: expected 6 numbers for 6 x 1, found 5"),
     (YAML, "rows: 5", "rows: 99999999", "is 99999999 x 1; expected no more than 14 numbers"),
@@ -56,10 +57,9 @@ const MISTAKES: [(&str, &str, &str, &str); 47] = [
     (YAML, "image_height: 480", "image_Width: 480", "says again what `image_width` said"),
     (YAML, "image_height: 480\n", "", "expected `image_width` and `image_height`, found one of them"),
     (YAML, "image_width: 640", "image_width: 0", "f:3, `image_width`: expected a whole number of pixels"),
-    (YAML, "dt: d", "dt: \"2d\"", "f:8, `camera_matrix.dt`: expected d or f, found `2d`"),
+    (YAML, "dt: d", "dt: \"2d\"", "f:8, `camera_matrix.dt`: expected d, f or one kind of whole numbers, found `2d`"),
     (YAML, "500., 0.,", "500., 2.,", "has a skew of 2"),
     (YAML, "500., 0.,", "-500., 0.,", "expected focal lengths above zero"),
-    (YAML, "camera_matrix", "camera_mat", "has no `camera_matrix`"),
     (YAML, "data: [ 500.", "data: *a [ 500.", "f:9"),
     (YAML, "image_height: 480", "image_height: 480\nfisheye_model: 1", "expected 4 coefficients of the fisheye camera, found 5"),
     (YAML, "-2.0e-03, 0. ]\n", "-2.0e-03", "not well-formed YAML"),
@@ -72,7 +72,7 @@ const MISTAKES: [(&str, &str, &str, &str); 47] = [
     (METASHAPE, "<f>500</f>", "<f>500</f><f>500</f>", "f:5:11, `f`: stands in `calibration` twice; expected once"),
     (METASHAPE, "<f>500</f>", "", "`calibration`: has no element `f`"),
     (METASHAPE, "<f>500</f>", "<f>NaN</f>", "f:5:1, `f`: expected a finite number with a decimal point, found `NaN`"),
-    (METASHAPE, "<f>500</f>", "<f>500</f><k5>0.2</k5>", "`k5`: is 0.2; no such parameter is known"),
+    (METASHAPE, "<f>500</f>", "<f>500</f><k5>0.2</k5>", "`k5`: is no key that is known of a lens"),
     (METASHAPE, "<f>500</f>", "<f>500</f><fx>500</fx>", "stands beside `fx`"),
     (METASHAPE, "<f>500</f>", "<f><a/></f>", "`a`: expected a value in `f`, found an element"),
     (OLD, "<fy>501</fy>", "", "has no element `fy`"),

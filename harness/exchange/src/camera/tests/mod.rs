@@ -5,6 +5,7 @@ mod colmap_files;
 mod encodings;
 mod files;
 mod malformed;
+mod other_names;
 mod own_format;
 mod reality_scan;
 mod recognised;

@@ -177,6 +177,7 @@ fn every_written_format_is_round_tripped() {
         "photogrammetric",
         "opencv-yaml",
         "opencv-xml",
+        "opencv-json",
         "metashape",
         "metashape-cameras",
         "photoscan-cameras",

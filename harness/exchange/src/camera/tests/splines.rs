@@ -61,3 +61,29 @@ fn other_models_are_fitted_to_the_splines_and_half_a_pixel_is_the_limit() {
     let accepted = to(&rough, "opencv-fisheye", &ConvertOptions { accept: true, ..ConvertOptions::default() }).unwrap();
     assert!(accepted.conversion.residual.max_px > 0.5);
 }
+
+/// Splines whose axis stands askew to that of the lens: after a rotation they are as near to other models as before, and the pose is turned with the camera.
+#[test]
+fn splines_that_stand_askew_are_fitted_with_a_rotation() {
+    let shifted = |off: f64| {
+        let control = (0..16 * 11).map(|i| {
+            let (x, y) = (f64::from(i % 16) - 7.5, f64::from(i / 16) - 5.0);
+            let r2 = x * x + y * y;
+            format!("{}, {}", -2e-4 * x * r2 + off * (1.0 + 0.02 * x * x), -2e-4 * y * r2 + off * 0.02 * x * y)
+        });
+        let head = text(0.0);
+        let (before, after) = (head.find("1087.5, ").unwrap() + 8, head.find(" ],\n 'extrinsics'").unwrap());
+        format!("{}{}{}", &head[..before], control.collect::<Vec<_>>().join(", "), &head[after..])
+    };
+    let askew = read(&shifted(0.02)).unwrap().cameras.remove(0);
+    let found = to(&askew, "opencv-fisheye", &ConvertOptions { accept: true, ..ConvertOptions::default() }).unwrap();
+    let angle = found.conversion.rotation.angle();
+    assert!(angle > 1e-3, "{angle}");
+    let held = ConvertOptions { accept: true, ..ConvertOptions::default() };
+    let without =
+        calibench_model::convert::fit(&askew.splines.as_ref().unwrap().model, calibench_model::convert::Target::OpenCvFisheye, &held)
+            .unwrap();
+    assert!(found.conversion.residual.rms_px < 0.5 * without.residual.rms_px, "{:?} {:?}", found.conversion.residual, without.residual);
+    assert!(found.camera.pose.unwrap().camera_from_world != askew.pose.unwrap().camera_from_world);
+    assert!(askew.notes.iter().any(|note| note.contains("rotated by")), "{:?}", askew.notes);
+}

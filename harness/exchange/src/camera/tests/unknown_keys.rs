@@ -1,6 +1,6 @@
-//! What a file holds and no reader understands is said; `xi` makes a FileStorage another camera.
+//! What a file holds and no reader understands is refused where it speaks of the lens, and else said; `xi` makes a FileStorage another camera.
 
-use calibench_model::camera::{Camera, CameraModel, ImageSize, Omni, Ray};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Omni, OpenCvFisheye, Ray};
 
 use super::super::ReadOptions;
 use super::{read, read_with};
@@ -43,7 +43,7 @@ fn xi_beside_what_contradicts_it_is_refused() {
         (XI, "xi: big\n", "f:15, `xi`: expected a finite number"),
         (XI, "xi: -0.5\n", "f:15, `xi`: expected a number from 0, found -0.5"),
         (XI, "xi: [1, 2]\n", "f:15, `xi`: expected one value"),
-        (XI, "xi: 1.2\nfisheye_model: 1\n", "f:15, `xi`: is cv2.omnidir's: no camera has it and `fisheye_model` both"),
+        (XI, "xi: 1.2\nfisheye_model: 1\n", "f:15, `xi`: is cv2.omnidir's: no camera has it and is a fisheye of cv2's both"),
         ("500., 0.,", "500., 2.,", "has a skew of 2, which is not known here beside `xi`"),
         (
             "   cols: 4\n   dt: d\n   data: [ ",
@@ -77,12 +77,12 @@ fn sizes_under_their_usual_names_are_used() {
 }
 
 #[test]
-fn keys_that_are_not_understood_are_said() {
+fn keys_that_speak_of_the_lens_are_mistakes_unless_they_are_left_out_by_name() {
     let size = Some(ImageSize { width: 640, height: 480 });
     let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/calibench/fuzz/seeds/cameras/");
     for (seed, from, to) in [
-        ("opencv.yml", "image_width", "camera_model: fisheye\nimage_width"),
-        ("opencv.xml", "<image_width>", "<camera_model>fisheye</camera_model><image_width>"),
+        ("opencv.yml", "image_width", "camera_model_2: 1\nimage_width"),
+        ("opencv.xml", "<image_width>", "<camera_model_2>1</camera_model_2><image_width>"),
         ("ros.yaml", "camera_name", "camera_model: fisheye\ncamera_name"),
         ("camodocal.yaml", "model_type", "camera_model: fisheye\nmodel_type"),
         ("camodocal.yaml", "   xi:", "   camera_model: 3\n   xi:"),
@@ -106,9 +106,90 @@ fn keys_that_are_not_understood_are_said() {
     ] {
         let text = std::fs::read_to_string(format!("{seeds}{seed}")).unwrap();
         assert!(text.contains(from), "{seed}: no {from}");
-        let options = ReadOptions { size, ..ReadOptions::default() };
         let changed = text.replacen(from, to, 1);
-        let notes = &read_with(&changed, options).unwrap_or_else(|error| panic!("{seed}: {error}")).cameras[0].notes;
+        let options =
+            |ignore: &[&str]| ReadOptions { size, ignore: ignore.iter().map(|&key| key.to_owned()).collect(), ..ReadOptions::default() };
+        let error = read_with(&changed, options(&[])).expect_err(seed);
+        assert!(error.contains("camera_model") && error.contains("--ignore-key") && error.starts_with("f:"), "{seed}: {error}");
+        let notes =
+            &read_with(&changed, options(&["camera_model", "camera_model_2"])).unwrap_or_else(|error| panic!("{seed}: {error}")).cameras[0]
+                .notes;
         assert!(notes.iter().any(|note| note.contains("`camera_model")), "{seed}: {notes:?}");
     }
+}
+
+/// Within a lens's block any key that is not known is a mistake, whatever it is called; elsewhere it is noted.
+#[test]
+fn what_does_not_speak_of_the_lens_is_a_mistake_within_its_block_alone() {
+    let size = Some(ImageSize { width: 640, height: 480 });
+    let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/calibench/fuzz/seeds/cameras/");
+    for (seed, from, to, within) in [
+        ("camodocal.yaml", "   xi:", "   wobble: 3\n   xi:", true),
+        ("kalibr.yaml", "  resolution", "  wobble: 1\n  resolution", true),
+        ("basalt.json", "\"camera_type\"", "\"wobble\": 1, \"camera_type\"", true),
+        ("opensfm.json", "\"width\"", "\"wobble\": 1, \"width\"", true),
+        ("bentley.xml", "<K1>", "<Wobble>1</Wobble><K1>", true),
+        ("metashape.xml", "<f>", "<wobble>0</wobble><f>", true),
+        ("opencv.yml", "image_width", "wobble: 1\nimage_width", false),
+        ("ros.yaml", "camera_name", "wobble: 1\ncamera_name", false),
+        ("mrcal.cameramodel", "'intrinsics'", "'wobble': 1, 'intrinsics'", false),
+        ("nerfstudio.json", "\"frames\"", "\"wobble\": 1, \"frames\"", false),
+        ("basalt.json", "{\"value0\"", "{\"wobble\": 1, \"value0\"", false),
+        ("caltech.m", "cc =", "wobble = 1;\ncc =", false),
+    ] {
+        let text = std::fs::read_to_string(format!("{seeds}{seed}")).unwrap();
+        assert!(text.contains(from), "{seed}: no {from}");
+        match (read_with(&text.replacen(from, to, 1), ReadOptions { size, ..ReadOptions::default() }), within) {
+            (Err(error), true) => assert!(error.to_lowercase().contains("wobble"), "{seed}: {error}"),
+            (Ok(file), false) => assert!(file.cameras[0].notes.iter().any(|note| note.contains("`wobble`")), "{seed}"),
+            (found, _) => panic!("{seed}: {found:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_storage_says_what_kind_its_lens_is() {
+    let four = STORAGE.replace(XI, "");
+    let kind = |lines: &str| read(&four.replace("image_width", &format!("{lines}image_width"))).map(|file| file.cameras[0].camera);
+    for line in [
+        "distortion_model: \"equidistant\"\n",
+        "camera_model: fisheye\n",
+        "is_fisheye: 1\n",
+        "lens_type: Kannala-Brandt\n",
+        "fisheye: true\n",
+    ] {
+        assert!(matches!(kind(line), Ok(Camera::OpenCvFisheye(_))), "{line}: {:?}", kind(line));
+    }
+    for line in ["distortion_model: plumb_bob\n", "camera_model: pinhole\n", "is_fisheye: 0\n"] {
+        assert!(matches!(kind(line), Ok(Camera::OpenCv(_))), "{line}: {:?}", kind(line));
+    }
+    for (line, expected) in [
+        ("distortion_model: \"bent\"\n", "f:3, `distortion_model`: `bent` is not known"),
+        ("camera_model: omnidir\n", "has no `xi`"),
+        ("fisheye: perhaps\n", "f:3, `fisheye`: expected 0 or 1"),
+        ("fisheye_model: 1\ncamera_model: pinhole\n", "f:4, `camera_model`: contradicts `fisheye_model`"),
+        ("lens: wide\n", "f:3, `lens`: is no key that is known of a lens"),
+    ] {
+        let error = kind(line).unwrap_err();
+        assert!(error.contains(expected), "{line}: {error}");
+    }
+    let pinhole = ReadOptions { fisheye: Some(false), ..ReadOptions::default() };
+    let error = read_with(&four.replace("image_width", "camera_model: fisheye\nimage_width"), pinhole).unwrap_err();
+    assert!(error.contains("contradicts the model that was asked for"), "{error}");
+}
+
+#[test]
+fn a_transforms_file_says_whether_its_lens_is_a_fisheye() {
+    let of = |model: &str| {
+        read(&format!("{{{model}\"fl_x\": 500.0, \"w\": 1280, \"h\": 960, \"k1\": 0.02, \"k2\": -0.01, \"k3\": 0.001, \"k4\": 2e-4}}"))
+            .map(|file| file.cameras[0].camera)
+    };
+    assert!(matches!(of("\"is_fisheye\": true, "), Ok(Camera::OpenCvFisheye(OpenCvFisheye { k: [0.02, -0.01, 0.001, 2e-4], .. }))));
+    assert!(of("\"is_fisheye\": false, ").is_ok_and(|camera| !matches!(camera, Camera::OpenCvFisheye(_))));
+    assert!(
+        of("\"is_fisheye\": true, \"camera_model\": \"OPENCV\", ")
+            .unwrap_err()
+            .contains("`is_fisheye`: contradicts `camera_model`, OPENCV")
+    );
+    assert!(of("\"is_fisheye\": 2, ").unwrap_err().contains("expected true or false"));
 }
