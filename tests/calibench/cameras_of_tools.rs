@@ -122,3 +122,47 @@ fn the_docs_name_every_format_of_a_tool() {
         );
     }
 }
+
+fn reports() -> std::path::PathBuf {
+    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into).join("reports")
+}
+
+/// Corners of a lens of 195 degrees: whatever the model, what was adjusted is shown, and written where it is asked for or beside.
+#[test]
+fn a_calibration_of_a_wide_lens_is_written() {
+    let from = reports().join("12-omni-output");
+    if !from.is_dir() {
+        eprintln!("skipped: {} is absent", from.display());
+        return;
+    }
+    let folder = folder();
+    let [points, control] = ["points.csv", "control.csv"].map(|name| from.join(name).display().to_string());
+    for model in ["omni", "eucm", "double-sphere", "fov"] {
+        let file = format!("{model}.yaml");
+        let all = ["calibrate", "-q", "--points", &points, "--control", &control, "--size", "1280x960", "--model", model];
+        let output = run(folder.path(), &[&all[..], &["-o", &file]].concat());
+        assert_ne!(output.status.code(), Some(2), "{model}: {}", stderr(&output));
+        assert!(!output.stdout.is_empty(), "{model}");
+        let card = good(folder.path(), &["camera", &file]);
+        assert!(card.contains(&format!("convention  {model}:")), "{model}: {card}");
+        // A convention that does not hold it is an error, and loses nothing.
+        let output = run(folder.path(), &[&all[..], &["-o", "no.yaml", "--to", "opencv5"]].concat());
+        let said = stderr(&output);
+        assert!(output.status.code() == Some(2) && !output.stdout.is_empty() && !folder.path().join("no.yaml").exists(), "{model}: {said}");
+        let beside = folder.path().join(if model == "omni" { "no-as-adjusted.yml" } else { "no-as-adjusted.yaml" });
+        assert!(beside.is_file(), "{model}: {said}");
+        std::fs::remove_file(beside).unwrap();
+    }
+}
+
+#[test]
+fn keys_of_a_lens_are_mistakes_and_can_be_left_out() {
+    let folder = folder();
+    std::fs::write(folder.path().join("a.yml"), CAMERA.replacen("image_width", "lens_type: wide\nimage_width", 1)).unwrap();
+    let output = run(folder.path(), &["convert", "a.yml", "--to", "colmap"]);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("`lens_type`"), "{}", stderr(&output));
+    std::fs::write(folder.path().join("b.yml"), CAMERA.replacen("image_width", "wobble_of_lens: wide\nimage_width", 1)).unwrap();
+    assert_eq!(run(folder.path(), &["camera", "b.yml"]).status.code(), Some(2));
+    let card = good(folder.path(), &["camera", "b.yml", "--ignore-key", "wobble_of_lens"]);
+    assert!(card.contains("`wobble_of_lens` was left out"), "{card}");
+}

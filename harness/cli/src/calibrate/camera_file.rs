@@ -6,22 +6,31 @@ use calibench_calibrate::Calibration;
 use calibench_exchange::OutputFile;
 use calibench_exchange::camera::conversion::ConversionError;
 use calibench_exchange::camera::fit::losses;
-use calibench_exchange::camera::for_file::{FileCamera, FileCameraError, for_file, one_file_for, own_file};
-use calibench_exchange::camera::{NamedCamera, camera_bytes};
+use calibench_exchange::camera::for_file::{FileCamera, FileCameraError, beside, for_file, one_file_for, own_file};
+use calibench_exchange::camera::{NamedCamera, camera_bytes, write_camera};
 use calibench_model::convert::ConvertError;
 
 use super::super::convert::{advise, no_target, size_of};
 use crate::failure::Failure;
 
 /// Writes the cameras with their covariances: in the convention asked for, or in the first format that holds them as they are and has the file's ending.
-/// Several go into one file if its format holds several, or else into a file each.
+/// Several go into one file if its format holds several, or else into a file each. Of a convention that does not hold them they are written beside, as they are.
 pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str>) -> Result<(), Failure> {
     let path = output.path();
-    let made = |camera| {
-        let source = calibration.named_camera(camera).map_err(Failure::Input)?;
-        for_file(path, &source, to).map_err(|error| refused(path, error))
-    };
-    let made = (0..calibration.cameras()).map(made).collect::<Result<Vec<_>, Failure>>()?;
+    let sources = (0..calibration.cameras()).map(|camera| calibration.named_camera(camera).map_err(Failure::Input));
+    let sources = sources.collect::<Result<Vec<_>, Failure>>()?;
+    let made = sources.iter().map(|source| for_file(path, source, to)).collect::<Result<Vec<_>, _>>();
+    let made = made.map_err(|error| {
+        if output.is_file() {
+            sources.iter().for_each(|source| keep(path, source));
+        }
+        refused(path, error)
+    })?;
+    for file in &made {
+        if let Some(why) = &file.instead {
+            say!("{}: {why}; it is written as it is, in the format of {}", path.display(), file.format.tool);
+        }
+    }
     for file in &made {
         if let Some((to, conversion)) = &file.fitted {
             say!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
@@ -51,6 +60,20 @@ pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str
         say!("{}: written", own.path().display());
     }
     Ok(())
+}
+
+/// Writes the camera as it is beside the file that does not hold it, where nothing is in the way: what was adjusted is not lost.
+fn keep(path: &Path, source: &NamedCamera) {
+    let Some((own, FileCamera { format, camera, .. })) = beside(path, source) else { return };
+    if own.exists() {
+        say!("{}: is there already, so the camera as it was adjusted is not written to it", own.display());
+        return;
+    }
+    let camera = NamedCamera { name: String::new(), ..camera };
+    match write_camera(&own, format, &[camera]) {
+        Ok(()) => say!("{}: the camera as it was adjusted, in the format of {}", own.display(), format.tool),
+        Err(error) => say!("{}: the camera as it was adjusted is not written: {error}", own.display()),
+    }
 }
 
 /// What to do when the camera does not go into the file.

@@ -153,13 +153,10 @@ impl Calibrate {
         calibrate(&prepared, &sets, |calibration| {
             let in_doubt = !(calibration.doubts().is_empty() && doubts.is_empty());
             let suspects = if in_doubt { suspects(Ok(calibration)) } else { Vec::new() };
-            self.deliver(calibration, (&photos, reading, &doubts), &suspects, &outputs)?;
-            if self.answered.json {
-                answer(&CalibrationAnswer::new(calibration, &doubts, &suspects).map_err(Failure::Input)?)?;
-            } else {
-                let lines = suspects.iter().map(|found| format!("suspected: {}\n", found.words())).collect::<String>();
-                print(&(summary(calibration) + &lines))?;
-            }
+            // What one place refuses is not lost for the others.
+            let told = self.tell(calibration, &doubts, &suspects);
+            let delivered = self.deliver(calibration, (&photos, reading, &doubts), &suspects, &outputs);
+            told.and(delivered)?;
             if in_doubt { Err(Failure::Doubt) } else { Ok(()) }
         })
         .map_err(explained)?
@@ -212,6 +209,15 @@ impl Calibrate {
         })
     }
 
+    fn tell(&self, calibration: &Calibration<'_>, doubts: &[String], suspects: &[Suspected]) -> Result<(), Failure> {
+        if self.answered.json {
+            answer(&CalibrationAnswer::new(calibration, doubts, suspects).map_err(Failure::Input)?)
+        } else {
+            let lines = suspects.iter().map(|found| format!("suspected: {}\n", found.words())).collect::<String>();
+            print(&(summary(calibration) + &lines))
+        }
+    }
+
     fn deliver(
         &self,
         calibration: &Calibration<'_>,
@@ -221,13 +227,13 @@ impl Calibrate {
     ) -> Result<(), Failure> {
         let doubts: Vec<String> = doubts.iter().cloned().chain(suspects.iter().map(Suspected::words)).collect();
         let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path(), reading)).collect();
-        if let Some(output) = &outputs.camera {
-            camera_file::write(output, calibration, self.to.as_deref())?;
-        }
-        if let Some(output) = &outputs.scene {
-            output.write(|file| file.write_all(scene_ply(calibration).as_bytes()))?;
-        }
-        Ok(outputs.report.as_ref().map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, &doubts, folder)))?)
+        let camera = outputs.camera.as_ref().map_or(Ok(()), |output| camera_file::write(output, calibration, self.to.as_deref()));
+        let scene = outputs.scene.as_ref().map_or(Ok(()), |output| output.write(|file| file.write_all(scene_ply(calibration).as_bytes())));
+        let report = |folder: &OutputFolder| folder.replace(|folder| write_report(calibration, &photos, &doubts, folder));
+        let report = outputs.report.as_ref().map_or(Ok(()), report);
+        camera?;
+        scene?;
+        Ok(report?)
     }
 }
 
