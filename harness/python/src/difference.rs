@@ -71,7 +71,8 @@ pub fn diff(
         return Err(input("points: the rotation is the best at these; with rotation=False there is none"));
     }
     let region = radius.map_or(Region::Frame, |px| Region::Radius { px });
-    let options = DifferenceOptions { region, rotation, compensation: true, finer: DifferenceOptions::FINE, ..DifferenceOptions::default() };
+    let options =
+        DifferenceOptions { region, rotation, compensation: true, finer: DifferenceOptions::FINE, ..DifferenceOptions::default() };
     let places = points.map(|points| positions(points, "points")).transpose()?;
     let found = released(py, || match &places {
         Some(places) => difference_at(a, b, places, &options),

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use calibench_adjust::ImageObservation;
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, Fold, ImageSize, Ray, fold};
+use calibench_model::camera::{Camera, CameraModel, Fold, ImageSize, Ray, fold, implausible};
 
 use crate::Calibration;
 
@@ -21,8 +21,9 @@ const INSIDE: f64 = 0.98;
 /// What is wrong for sure, in words. Of large residuals only where no check has found their cause.
 pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
     let explained = calibration.checked.iter().any(|checked| checked.doubt().is_some());
-    let cameras = (0..calibration.cameras()).flat_map(|camera| [folded(calibration, camera), away(calibration, camera)]);
-    cameras.flatten().chain(outside(calibration)).chain(far(calibration).filter(|_| !explained)).collect()
+    let cameras =
+        (0..calibration.cameras()).flat_map(|camera| folded(calibration, camera).into_iter().chain(of_no_lens(calibration, camera)));
+    cameras.chain(outside(calibration)).chain(far(calibration).filter(|_| !explained)).collect()
 }
 
 /// A camera that folds over inside its own frame, nearer to its axis than the circle that a fisheye pictures ends.
@@ -61,11 +62,10 @@ impl Calibration<'_> {
     }
 }
 
-/// A principal point outside the frame.
-fn away(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
-    let at = calibration.camera(camera).project(Ray::from_tangent(0.0, 0.0)).ok()?;
-    is_outside(calibration.camera(camera).size(), at)
-        .then(|| format!("the principal point{} lies outside the image, at {:.0}, {:.0}", calibration.of(camera), at.x, at.y))
+/// What no lens has, beyond the points too.
+fn of_no_lens(calibration: &Calibration<'_>, camera: usize) -> impl Iterator<Item = String> {
+    let of = calibration.of(camera);
+    implausible(calibration.camera(camera)).into_iter().map(move |fault| format!("the camera{of}: {fault}"))
 }
 
 /// Image points in use outside the frame: of another size, or swapped coordinates.

@@ -71,7 +71,7 @@ fn names(formats: &[&CameraFormat]) -> String {
 fn read(format: &'static CameraFormat, source: &Source<'_>, options: &ReadOptions) -> Read {
     let mut cameras = (format.read)(source, options)?;
     for named in cameras.iter_mut().take(MOST_DOUBTED) {
-        named.notes.extend(implausible(&named.camera).iter().map(ToString::to_string));
+        named.notes.extend(implausible(&named.camera).iter().map(|fault| format!("in doubt: {fault}")));
     }
     if cameras.is_empty() {
         return Err(CameraFileError::new(format!("{} without a camera; expected at least one", format.name)));

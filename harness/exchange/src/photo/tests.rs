@@ -108,12 +108,12 @@ fn the_head_tells_the_size_as_it_is_seen() {
     for orientation in 1..=8 {
         let values = [1, 2, 3, 4, 5, 6];
         for file in [png(&values, (3, 2), ExtendedColorType::L8, orientation), jpeg(&values, (3, 2), orientation)] {
-            fs::write(&path, file).unwrap();
+            std::fs::write(&path, file).unwrap();
             let (size, image) = (size_of(&path).unwrap(), read_photo(&path).unwrap().image);
             assert_eq!((size.width as usize, size.height as usize), (image.width(), image.height()), "{orientation}");
         }
     }
-    fs::write(&path, "no image").unwrap();
+    std::fs::write(&path, "no image").unwrap();
     assert!(matches!(size_of(&path), Err(PhotoError::Content { .. })));
 }
 
@@ -186,8 +186,8 @@ fn large_photographs_are_read_or_refused_by_their_size() {
     let mut head = tiff(&[], (width, height), 16, 3, 1);
     let count = head.windows(4).position(|bytes| bytes == [23, 1, 4, 0]).unwrap() + 8;
     head[count..count + 4].copy_from_slice(&(length as u32).to_le_bytes());
-    fs::write(&path, &head).unwrap();
-    let file = fs::OpenOptions::new().write(true).open(&path).unwrap();
+    std::fs::write(&path, &head).unwrap();
+    let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
     std::os::unix::fs::FileExt::write_all_at(&file, &[255; 6], head.len() as u64 + length - 6).unwrap();
     let image = read_photo(&path).unwrap().image;
     assert_eq!((image.width(), image.height()), (11_000, 9_100));
@@ -201,7 +201,7 @@ fn large_photographs_are_read_or_refused_by_their_size() {
 fn what_is_no_image_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("text.png");
-    fs::write(&path, "no image").unwrap();
+    std::fs::write(&path, "no image").unwrap();
     assert!(read_photo(&path).unwrap_err().to_string().contains("text.png"));
     assert!(matches!(read_photo(folder.path()), Err(PhotoError::File { .. })));
     assert!(matches!(read_photo(&folder.path().join("none.png")), Err(PhotoError::File { .. })));

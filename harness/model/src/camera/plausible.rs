@@ -46,7 +46,7 @@ impl fmt::Display for Implausible {
                 let [x, y] = off.map(|share| 100.0 * share);
                 write!(
                     f,
-                    "in doubt: the principal point, ({:.1}, {:.1}), is {x:.0} % of the width and {y:.0} % of the height from the middle of the frame: no lens has that \
+                    "the principal point, ({:.1}, {:.1}), is {x:.0} % of the width and {y:.0} % of the height from the middle of the frame: no lens has that \
                      unless it is shifted, or the images are parts of larger ones",
                     at.x, at.y
                 )?;
@@ -59,7 +59,7 @@ impl fmt::Display for Implausible {
             }
             Self::Distortion { at, scale } => write!(
                 f,
-                "in doubt: at ({:.0}, {:.0}) the image is {scale:.2} times as large along the radius as that of a lens without distortion: no lens has that",
+                "at ({:.0}, {:.0}) the image is {scale:.2} times as large along the radius as that of a lens without distortion: no lens has that",
                 at.x, at.y
             ),
         }
