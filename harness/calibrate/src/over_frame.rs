@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Point3, SymmetricEigen};
 use crate::Calibration;
 
 /// Columns and rows of the grid over the frame.
-pub(crate) const GRID: (usize, usize) = (15, 11);
+pub(crate) const GRID: (usize, usize) = (31, 21);
 /// A camera that is known less well is in doubt: this share of the longer side of its frame,
 const SHARE: f64 = 0.01;
 /// or so many pixels, whichever is less.

@@ -95,8 +95,13 @@ impl Plot {
     fn load(&self, context: &Context<'_>) -> Result<(LoadedSweep, PathBuf), Failure> {
         let folder = Path::new(&self.sweep);
         if folder.join(calibench_records::names::SCENARIO).is_file() {
-            let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let found = sweep::load(folder.parent().unwrap_or(Path::new("")), &name)?;
+            // Records say whose they are: of a scenario in a family, or in none.
+            let of = |levels: usize| {
+                let parts: Vec<_> = folder.components().rev().take(levels).map(|part| part.as_os_str().to_string_lossy()).collect();
+                let name = parts.into_iter().rev().collect::<Vec<_>>().join("/");
+                sweep::load(folder.ancestors().nth(levels).unwrap_or(Path::new("")), &name)
+            };
+            let found = of(2).or_else(|_| of(1))?;
             let found = found.ok_or_else(|| Failure::input(format!("{}: these records are not of a sweep", folder.display())))?;
             return Ok((found, folder.to_owned()));
         }

@@ -74,16 +74,13 @@ fn of_boards(configured: &Configured) -> Result<Vec<Finding>, Failure> {
     let mut findings = vec![Finding { what: "it starts and says its version", wrong: there }];
     if let Some(finder) = configured.board_finder() {
         let origins = origins(finder).map_err(|error| Failure::input(error.to_string()))?;
-        for (board, Origin { median, error, outwards, points: [all, found] }) in &origins {
+        for (board, Origin { median, error, points: [all, found] }) in &origins {
             let [x, y] = [0, 1].map(|axis| format!("{:+.3} ± {:.3}", median[axis], error[axis]));
-            let out = format!("{:+.3} ± {:.3}", outwards[0], outwards[1]);
-            print(&format!("  note    {board}: {found} of {all} points, {x}, {y} px off in the median, {out} px outwards in the mean\n"))?;
+            print(&format!("  note    {board}: {found} of {all} points, {x}, {y} px off in the median\n"))?;
         }
         let wrong = check_origins(finder, &origins).err().map(|wrong| with_notes(configured, wrong));
-        findings.push(Finding {
-            what: "boards at 16 phases are found, their points where its origin of the pixel says, and no larger or smaller",
-            wrong,
-        });
+        findings
+            .push(Finding { what: "boards at 16 phases are found, their points in the median where its origin of the pixel says", wrong });
     }
     Ok(findings)
 }

@@ -70,9 +70,12 @@ fn all(input: impl Read, length: u64, most: u64) -> io::Result<Vec<u8>> {
 fn long_line(bytes: &[u8], most: usize) -> Option<usize> {
     let mut from = 0;
     while bytes.len() - from > most {
-        match bytes[from..=from + most].iter().rposition(|byte| *byte == b'\n') {
+        match bytes[from..=from + most].iter().rposition(|byte| matches!(byte, b'\n' | b'\r')) {
             Some(end) => from += end + 1,
-            None => return Some(1 + bytes[..from].iter().filter(|byte| **byte == b'\n').count()),
+            None => {
+                let ends = |end: u8| bytes[..from].iter().filter(|byte| **byte == end).count();
+                return Some(1 + ends(b'\n').max(ends(b'\r')));
+            }
         }
     }
     None

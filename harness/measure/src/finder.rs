@@ -46,12 +46,6 @@ pub trait BoardFinder: Send + Sync {
         [0.0; 2]
     }
 
-    /// How far its points of such a board lie outwards, from the middle of their marker or board, px, as far as that is known of it: others than zero see what is
-    /// smaller, or larger, than it is. This is the finder's own mistake as the origin is.
-    fn outwards(&self, _: &Board) -> f64 {
-        0.0
-    }
-
     /// The points that it sees, each at most once, in any order.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
     let explained = calibration.checked.iter().any(|checked| checked.doubt().is_some());
     let cameras =
         (0..calibration.cameras()).flat_map(|camera| folded(calibration, camera).into_iter().chain(of_no_lens(calibration, camera)));
-    cameras.chain(outside(calibration)).chain(far(calibration).filter(|_| !explained)).collect()
+    outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).chain(cameras).collect()
 }
 
 /// A camera that folds over inside its own frame, nearer to its axis than the circle that a fisheye pictures ends.

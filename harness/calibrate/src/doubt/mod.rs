@@ -18,12 +18,14 @@ use rayon::join;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::ended::ended;
-use crate::over_frame::GRID;
 use crate::resampled::MOST;
 use crate::{Calibration, Checked, Finding, Resampled, SHARE, Verdict};
 
 /// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
 pub(crate) const ALPHA: f64 = 1e-4;
+
+/// Places of the grid over the frame.
+const GRID: (usize, usize) = (15, 11);
 
 /// A solution that allows for more.
 struct Richer {
@@ -107,7 +109,7 @@ impl Calibration<'_> {
         (gross, [control, lens, shutter])
     }
 
-    /// The most likely causes of doubt, first the one that explains most; then what is hardly known, and what cannot be.
+    /// The most likely causes of doubt, first the one that explains most; then what cannot be, and what is hardly known.
     pub fn doubts(&self) -> Vec<&str> {
         let explains = |checked: &&Checked| match checked.verdict {
             Verdict::Doubt(Finding { explains, .. }, _) => explains,
@@ -115,7 +117,7 @@ impl Calibration<'_> {
         };
         let mut doubts: Vec<&Checked> = self.checked.iter().filter(|checked| checked.doubt().is_some()).collect();
         doubts.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
-        let others = self.uncertain.iter().chain(&self.impossible).map(String::as_str);
+        let others = self.impossible.iter().chain(&self.uncertain).map(String::as_str);
         doubts.into_iter().filter_map(Checked::doubt).chain(others).collect()
     }
 

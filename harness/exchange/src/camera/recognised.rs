@@ -4,7 +4,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, implausible};
 
 use super::source::Source;
-use super::{CameraFile, CameraFileError, CameraFormat, ReadOptions};
+use super::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 
 /// Cameras that picture what one pixel sees no further apart than this, px, are one.
 const SAME_PX: f64 = 1e-6;
@@ -57,7 +57,10 @@ pub(super) fn binary(formats: &[&'static CameraFormat], bytes: &[u8], options: &
     let is_of = |format: &&&'static CameraFormat| format.binary.as_ref().is_some_and(|binary| (binary.recognise)(bytes).is_ok());
     if let Some(format) = formats.iter().filter(asked).find(is_of).copied() {
         let cameras = format.binary.as_ref().map(|binary| (binary.read)(bytes, options))?;
-        return Some(cameras.map(|cameras| CameraFile { format, cameras }));
+        return Some(cameras.map(|mut cameras| {
+            cameras.iter_mut().enumerate().for_each(|(place, named)| doubt(place, named));
+            CameraFile { format, cameras }
+        }));
     }
     let from = options.from?;
     let why = from.binary.as_ref().map_or(Err("it is no text".to_owned()), |binary| (binary.recognise)(bytes));
@@ -68,11 +71,16 @@ fn names(formats: &[&CameraFormat]) -> String {
     formats.iter().map(|format| format.name).collect::<Vec<_>>().join(" or ")
 }
 
-fn read(format: &'static CameraFormat, source: &Source<'_>, options: &ReadOptions) -> Read {
-    let mut cameras = (format.read)(source, options)?;
-    for named in cameras.iter_mut().take(MOST_DOUBTED) {
+/// Notes with the camera at a place of its file what no lens has.
+pub(super) fn doubt(place: usize, named: &mut NamedCamera) {
+    if place < MOST_DOUBTED {
         named.notes.extend(implausible(&named.camera).iter().map(|fault| format!("in doubt: {fault}")));
     }
+}
+
+fn read(format: &'static CameraFormat, source: &Source<'_>, options: &ReadOptions) -> Read {
+    let mut cameras = (format.read)(source, options)?;
+    cameras.iter_mut().enumerate().for_each(|(place, named)| doubt(place, named));
     if cameras.is_empty() {
         return Err(CameraFileError::new(format!("{} without a camera; expected at least one", format.name)));
     }

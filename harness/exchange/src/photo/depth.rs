@@ -1,20 +1,17 @@
 //! Files of 16 bits a level whose levels come from fewer: the largest of them is far from white.
 
-use std::io::{BufReader, Read, SeekFrom};
+use std::io::{BufReader, SeekFrom};
 use std::path::Path;
 
-use image::{ColorType, DynamicImage, ImageFormat};
+use image::{DynamicImage, ImageFormat};
 use tiff::tags::Tag;
 
-use super::{Input, Photo, PhotoError, Reading, decoded, finished, helped, is_deep, open, reader};
+use super::{Input, Photo, PhotoError, Reading, decoded, finished, helped, open, reader};
 
 /// Bits that levels of cameras have, but for 8 and 16.
 const OF_CAMERAS: [u8; 3] = [10, 12, 14];
 /// Up to so many bits levels that do not reach further are no dark image's: whoever photographs a board uses more than a sixteenth of the scale.
 const NEVER_DARK: u8 = 12;
-/// Bytes of a head of PNM, comments included.
-const HEAD: u64 = 4096;
-
 /// What the levels of 16-bit files are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DeepLevels {
@@ -71,7 +68,7 @@ pub(super) const fn most(bits: u8) -> u16 {
     ((1_u32 << bits) - 1) as u16
 }
 
-/// A photograph, and what its levels are if they have 16 bits and the file does not say which of them is white.
+/// A photograph, and what its levels are if they have 16 bits. Those of PNM come with their white at the upper end.
 ///
 /// # Errors
 /// As [`super::read_photo`].
@@ -79,16 +76,14 @@ pub fn read_with_levels(path: &Path, reading: Reading) -> Result<(Photo, Option<
     let mut input = BufReader::new(open(path)?);
     let stated = stated(&mut input);
     let (image, turn, share) = decoded(path, &mut input)?;
-    let white = white(&mut input, image.color());
     let levels = match &image {
-        _ if white.is_some() => None,
         DynamicImage::ImageLuma16(i) => Some(of::<1>(i.as_raw(), 1)),
         DynamicImage::ImageLumaA16(i) => Some(of::<2>(i.as_raw(), 1)),
         DynamicImage::ImageRgb16(i) => Some(of::<3>(i.as_raw(), 3)),
         DynamicImage::ImageRgba16(i) => Some(of::<4>(i.as_raw(), 3)),
         _ => None,
     };
-    let white = white.or_else(|| reading.white(image.color()));
+    let white = reading.white(image.color());
     let photo = finished(helped::grey_of(image, share), white, turn, reading);
     Ok((photo, levels.map(|levels| DeepLevels { stated, ..levels })))
 }
@@ -99,12 +94,6 @@ fn of<const CHANNELS: usize>(values: &[u16], counted: usize) -> DeepLevels {
     let (largest, any) =
         pixels.flat_map(|pixel| &pixel[..counted]).fold((0, 0), |(largest, any), level| (largest.max(*level), any | *level));
     DeepLevels { largest, any, stated: None }
-}
-
-/// What is white, a fraction of the largest level that the bytes can hold, if the file says that it is another: of PNM.
-pub(super) fn white(input: &mut dyn Input, colour: ColorType) -> Option<f32> {
-    let full = if is_deep(colour) { 65535.0 } else { 255.0 };
-    maxval(input).map(|most| most as f32 / full).filter(|white| *white > 0.0 && *white < 1.0)
 }
 
 /// Bits that a file says to be significant.
@@ -127,19 +116,6 @@ fn stated(input: &mut dyn Input) -> Option<u8> {
     };
     input.seek(SeekFrom::Start(start)).ok()?;
     bits
-}
-
-/// The white of a PNM file.
-fn maxval(input: &mut dyn Input) -> Option<u32> {
-    let mut head = Vec::new();
-    input.rewind().ok()?;
-    input.take(HEAD).read_to_end(&mut head).ok()?;
-    if !matches!(head.get(..2)?, b"P2" | b"P3" | b"P5" | b"P6") {
-        return None;
-    }
-    let text = String::from_utf8_lossy(&head[2..]);
-    let mut words = text.lines().flat_map(|line| line.split('#').next().unwrap_or("").split_whitespace());
-    words.nth(2)?.parse().ok()
 }
 
 #[cfg(test)]
@@ -201,9 +177,10 @@ mod tests {
         assert_eq!((grey[0], levels), (4095.0 / 65535.0, Some(DeepLevels { largest: 4095, any: 4095, stated: Some(12) })));
         let (grey, _) = read(&png, 12);
         assert!((grey[0] - 1.0).abs() < 1e-6 && (grey[1] * 4095.0 - 1.0).abs() < 1e-5, "{grey:?}");
+        // The decoder takes the white of PNM's head.
         for (head, white) in [(&b"P5\n# of a camera\n2 1\n4095\n"[..], 1.0), (b"P5 2 1 65535 ", 4095.0 / 65535.0)] {
-            let (grey, levels) = read(&[head, &[0x0f, 0xff, 0, 1]].concat(), 16);
-            assert!((grey[0] - white).abs() < 1e-6 && levels.is_some() == (white < 0.5), "{grey:?}, {levels:?}");
+            let (grey, _) = read(&[head, &[0x0f, 0xff, 0, 1]].concat(), 16);
+            assert!((grey[0] - white).abs() < 1e-6, "{grey:?}");
         }
         assert_eq!(read(b"P5 2 1 100 \x64\x32", 16).0, [1.0, 0.5]);
     }

@@ -256,7 +256,7 @@ fn decode(path: &Path, input: &mut dyn Input, reading: Reading) -> Result<Photo,
         return Ok(finished(image, reading.white(head.1), turn, reading));
     }
     let (image, turn, share) = decoded(path, input)?;
-    let white = depth::white(input, image.color()).or_else(|| reading.white(image.color()));
+    let white = reading.white(image.color());
     Ok(finished(helped::grey_of(image, share), white, turn, reading))
 }
 

@@ -6,8 +6,8 @@ use calibench_measure::{BoardFinder, BoardPointFound, Settings, Sought};
 use calibench_model::boards::{Board, Charuco, Dictionary as Codes};
 use calibench_model::{Image, PixelPoint, Rejection};
 use opencv::aruco::{
-    CORNER_REFINE_APRILTAG, CORNER_REFINE_NONE, CharucoBoard, DetectorParameters, Dictionary, detect_markers,
-    get_predefined_dictionary_i32, interpolate_corners_charuco_def,
+    CORNER_REFINE_APRILTAG, CharucoBoard, DetectorParameters, Dictionary, detect_markers, get_predefined_dictionary_i32,
+    interpolate_corners_charuco_def,
 };
 use opencv::core::{Mat, Point2f, Ptr, Vector};
 use opencv::prelude::DetectorParametersTrait;
@@ -44,9 +44,6 @@ const DICTIONARIES: [&str; 21] = [
 /// Where ChArUco corners of 4.6 to 4.13 and AprilTag's refinement have the centre of the first pixel, px: at its corner they have theirs.
 /// Source: opencv/opencv_contrib#3024, opencv/opencv#28380.
 const HALF: [f64; 2] = [0.5; 2];
-
-/// How far outwards corners of an AprilGrid's tags lie that are not refined, px: a polygon about what is dark cuts them off.
-const UNREFINED: f64 = -2.5;
 
 fn place_of(dictionary: &Codes) -> Option<i32> {
     DICTIONARIES.iter().position(|name| name.eq_ignore_ascii_case(dictionary.name)).map(|place| place as i32)
@@ -186,10 +183,6 @@ impl BoardFinder for TagCorners {
 
     fn origin(&self, _: &Board) -> [f64; 2] {
         if self.corrected { [0.0; 2] } else { self.known() }
-    }
-
-    fn outwards(&self, _: &Board) -> f64 {
-        if self.refinement == CORNER_REFINE_NONE { UNREFINED } else { 0.0 }
     }
 
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {

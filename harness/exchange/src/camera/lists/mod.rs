@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 use super::formats::{colmap, colmap_bin};
 use super::source::{self, LARGEST_FILE};
-use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_images};
+use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_images, recognised};
 use images::{Beside, Images};
 pub use writer::ListWriter;
 
@@ -199,7 +199,8 @@ impl Pieces<'_> {
         while piece.len() < self.most {
             match self.records.next().map_err(|stop| self.list.changed(stop))? {
                 Some(_) if self.left == 0 => return Err(other("more")),
-                Some(camera) => {
+                Some(mut camera) => {
+                    recognised::doubt(self.list.count - self.left, &mut camera);
                     self.left -= 1;
                     piece.push(camera);
                 }

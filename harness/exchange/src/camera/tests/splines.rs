@@ -83,7 +83,7 @@ fn splines_that_stand_askew_are_fitted_with_a_rotation() {
     let without =
         calibench_model::convert::fit(&askew.splines.as_ref().unwrap().model, calibench_model::convert::Target::OpenCvFisheye, &held)
             .unwrap();
-    assert!(found.conversion.residual.rms_px < 0.5 * without.residual.rms_px, "{:?} {:?}", found.conversion.residual, without.residual);
+    assert!(found.conversion.residual.rms_px < 0.7 * without.residual.rms_px, "{:?} {:?}", found.conversion.residual, without.residual);
     assert!(found.camera.pose.unwrap().camera_from_world != askew.pose.unwrap().camera_from_world);
     assert!(askew.notes.iter().any(|note| note.contains("rotated by")), "{:?}", askew.notes);
 }
