@@ -42,7 +42,7 @@ fn a_standard_error_that_takes_nothing_changes_no_exit_code() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?} with a broken one");
         let own = program(project.path());
         let mut shell = std::process::Command::new("sh");
-        own.get_envs().for_each(|(name, value)| drop(value.map(|value| shell.env(name, value))));
+        shell.envs(own.get_envs().filter_map(|(name, value)| Some((name, value?))));
         let closed = shell.args(["-c", "exec \"$0\" \"$@\" 2>&-"]).arg(own.get_program()).args(arguments);
         let output = closed.current_dir(project.path()).stdin(Stdio::null()).output().unwrap();
         assert_eq!(output.status.code(), Some(code), "{arguments:?} with a closed one");

@@ -89,10 +89,9 @@ fn determined(engine: &Engine, end: &mut End) -> Result<Solved, AdjustError> {
     let sigma0 = (end.normals.cost / redundancy as f64).sqrt();
     // The pivots depend on the order of the unknowns; the standard deviations do not.
     let suspect = |solved: &Solved| solved.factor.smallest_pivot < SUSPECT || engine.has_senseless_distance(solved, &end.state, sigma0);
-    if solved.as_ref().is_none_or(suspect) || !end.converged {
-        if let Some(defect) = directions(engine, &end.state, &end.normals, sigma0) {
-            return Err(AdjustError::Undetermined(Box::new(defect)));
-        }
+    let is_doubtful = solved.as_ref().is_none_or(suspect) || !end.converged;
+    if let Some(defect) = is_doubtful.then(|| directions(engine, &end.state, &end.normals, sigma0)).flatten() {
+        return Err(AdjustError::Undetermined(Box::new(defect)));
     }
     let not_converged = || {
         let (iterations, gain, cost) = (end.iterations, end.gain, end.normals.cost);

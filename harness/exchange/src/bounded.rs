@@ -73,8 +73,8 @@ fn long_line(bytes: &[u8], most: usize) -> Option<usize> {
         match bytes[from..=from + most].iter().rposition(|byte| matches!(byte, b'\n' | b'\r')) {
             Some(end) => from += end + 1,
             None => {
-                let ends = |end: u8| bytes[..from].iter().filter(|byte| **byte == end).count();
-                return Some(1 + ends(b'\n').max(ends(b'\r')));
+                let ends = |end: u8| bytes[..from].split(|byte| *byte == end).count();
+                return Some(ends(b'\n').max(ends(b'\r')));
             }
         }
     }

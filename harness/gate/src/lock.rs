@@ -67,10 +67,10 @@ mod tests {
                     let lock = Lock::take(path, wanted, || waiting.send("waits").unwrap());
                     sent.send(if lock.is_ok() { "has it" } else { "failed" }).unwrap();
                 });
-                assert_eq!(said.recv_timeout(Duration::from_secs(60)), Ok("waits"), "{held:?} {wanted:?}");
+                assert_eq!(said.recv_timeout(Duration::from_mins(1)), Ok("waits"), "{held:?} {wanted:?}");
                 assert!(said.recv_timeout(Duration::from_millis(50)).is_err(), "{held:?} {wanted:?}: not while it is held");
                 drop(first);
-                assert_eq!(said.recv_timeout(Duration::from_secs(60)), Ok("has it"), "{held:?} {wanted:?}");
+                assert_eq!(said.recv_timeout(Duration::from_mins(1)), Ok("has it"), "{held:?} {wanted:?}");
             });
         }
         let _both = [take(Access::Compare), Lock::take(folder.path(), Access::Compare, || panic!("nobody waits for readers")).unwrap()];

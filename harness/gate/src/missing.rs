@@ -18,7 +18,7 @@ pub(super) fn completeness(baseline: &Table, current: &Table) -> Vec<Finding> {
                 findings.push(gone(name, label, base, format!("the method is unavailable: {why}")));
             }
             Some(now) if now.points.is_empty() && !base.points.is_empty() => {
-                findings.push(gone(name, label, base, "the method has no points".into()))
+                findings.push(gone(name, label, base, "the method has no points".into()));
             }
             Some(now) => {
                 findings.extend(missing_points(name, label, base, now));

@@ -16,7 +16,7 @@ pub(crate) struct Copies {
     /// Its place.
     pub of: usize,
     /// The places of the others.
-    pub copies: Vec<usize>,
+    pub others: Vec<usize>,
     /// How far their points are from its own at most, px RMS.
     pub apart: f64,
 }
@@ -24,7 +24,7 @@ pub(crate) struct Copies {
 impl Copies {
     /// In words, by the names of photographs.
     pub fn said(&self, names: &[String]) -> String {
-        let all: Vec<&str> = self.copies.iter().map(|copy| names[*copy].as_str()).collect();
+        let all: Vec<&str> = self.others.iter().map(|copy| names[*copy].as_str()).collect();
         let (show, shows) = if all.len() == 1 { ("shows", "is") } else { ("show", "are") };
         format!(
             "{} {show} the board where {} does, to {:.2} px, and {shows} counted once with it: the same photograph, or one from the same place, tells nothing new",
@@ -44,15 +44,15 @@ pub(crate) fn copies(photos: &[Vec<(&str, PixelPoint)>]) -> Vec<Copies> {
         if taken[of] || photos[of].is_empty() {
             continue;
         }
-        let mut one = Copies { of, copies: Vec::new(), apart: 0.0 };
+        let mut one = Copies { of, others: Vec::new(), apart: 0.0 };
         for other in of + 1..photos.len() {
             if let Some(apart) = apart(&photos[of], &by_name[other]).filter(|_| !taken[other]) {
                 taken[other] = true;
-                one.copies.push(other);
+                one.others.push(other);
                 one.apart = one.apart.max(apart);
             }
         }
-        if !one.copies.is_empty() {
+        if !one.others.is_empty() {
             found.push(one);
         }
     }
@@ -98,7 +98,7 @@ mod tests {
             Vec::new(),
         ];
         let found = copies(&photos);
-        assert_eq!(found.iter().map(|one| (one.of, one.copies.clone())).collect::<Vec<_>>(), [(0, vec![1, 3]), (2, vec![6])]);
+        assert_eq!(found.iter().map(|one| (one.of, one.others.clone())).collect::<Vec<_>>(), [(0, vec![1, 3]), (2, vec![6])]);
         assert!(found[0].apart > 0.0 && found[0].apart < 0.05 && found[1].apart == 0.0);
         assert_eq!(
             found[1].said(&names),

@@ -71,7 +71,7 @@ impl Finder {
             found.iter().map(|corners| corners.points.iter().map(|row| (row.target.as_str(), row.start.position)).collect()).collect();
         for same in copies(&points) {
             found[same.of].doubts.push(same.said(&names));
-            for copy in same.copies {
+            for copy in same.others {
                 let reason = format!("the same photograph as {}", names[same.of]);
                 found[copy].points.clear();
                 found[copy].lost = vec![LostRow { image: names[copy].clone(), target: String::new(), status: COPY.to_owned(), reason }];

@@ -51,7 +51,7 @@ pub fn measured_boards(
     let points: Vec<Vec<_>> = found.iter().map(|(.., at)| at.iter().map(|(target, at)| (target.as_str(), *at)).collect()).collect();
     for same in copies(&points) {
         found[same.of].1.push(same.said(&names));
-        for copy in same.copies {
+        for copy in same.others {
             let why = format!("the same photograph as {}", names[same.of]);
             found[copy].0 = Trial { missed_views: vec![(names[copy].as_str().into(), why)], ..Trial::default() };
         }

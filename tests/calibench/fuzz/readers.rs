@@ -80,16 +80,16 @@ fn cells<T: Kept>(bytes: &[u8], folder: &Path) -> Result<(), String> {
 }
 
 fn camera(bytes: &[u8], _: &Path) -> Result<(), String> {
-    read_camera(bytes, ReadOptions::default())
+    read_camera(bytes, &ReadOptions::default())
 }
 
 fn camera_of_size(bytes: &[u8], _: &Path) -> Result<(), String> {
-    read_camera(bytes, ReadOptions { size: Some(SIZE), fisheye: Some(true), lens: None, from: None, ignore: Vec::new() })
+    read_camera(bytes, &ReadOptions { size: Some(SIZE), fisheye: Some(true), lens: None, from: None, ignore: Vec::new() })
 }
 
 /// What a format reads it writes and reads again, or says why not.
-fn read_camera(bytes: &[u8], options: ReadOptions) -> Result<(), String> {
-    let found = parse_camera(FILE, bytes, &options).map_err(|error| error.to_string())?;
+fn read_camera(bytes: &[u8], options: &ReadOptions) -> Result<(), String> {
+    let found = parse_camera(FILE, bytes, options).map_err(|error| error.to_string())?;
     if let Ok(bytes) = camera_bytes(found.format, &found.cameras) {
         let size = calibench_model::camera::CameraModel::size(&found.cameras[0].camera);
         let own = ReadOptions { fisheye: options.fisheye, ..ReadOptions::of_written(found.format, size) };

@@ -61,9 +61,12 @@ pub(super) fn all<'a>(
 
 /// The same cameras as fisheyes; what was said of parameters of another model does not count.
 fn fisheyes(settings: &Settings) -> Settings {
-    let fisheye = |optics: &Optics| match model::is_wide(optics) {
-        true => optics.clone(),
-        false => Optics { model: Some("opencv-fisheye".into()), solve: None, priors: Vec::new(), start: None, ..optics.clone() },
+    let fisheye = |optics: &Optics| {
+        if model::is_wide(optics) {
+            optics.clone()
+        } else {
+            Optics { model: Some("opencv-fisheye".into()), solve: None, priors: Vec::new(), start: None, ..optics.clone() }
+        }
     };
     Settings { cameras: settings.cameras.iter().map(fisheye).collect(), ..settings.clone() }
 }

@@ -49,7 +49,7 @@ fn the_standard_deviation_over_the_frame_is_that_of_trials() {
             .into_par_iter()
             .map(|seed| {
                 let known = |calibration: &Calibration<'_>| {
-                    let options = DifferenceOptions { columns: 15, ..DifferenceOptions::default() };
+                    let options = DifferenceOptions { columns: 31, ..DifferenceOptions::default() };
                     let apart = difference(calibration.camera(0), &lens(), &options).unwrap().spread.rms_px;
                     let known = calibration.over_frame(0).unwrap();
                     assert!(known.is_within() && calibration.doubts().is_empty(), "{known:?} {:?}", calibration.doubts());

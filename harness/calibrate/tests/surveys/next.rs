@@ -15,7 +15,7 @@ fn noisy(scene: Scene) -> Scene {
 /// The root mean square over the frame, px, of what was adjusted.
 fn uncertainty(calibration: &Calibration<'_>) -> f64 {
     let (names, covariance) = calibration.covariances.of_camera(0);
-    let weight = frame_weight(calibration.camera(0), &names, (15, 11), Distance::Far).unwrap();
+    let weight = frame_weight(calibration.camera(0), &names, (31, 21), Distance::Far).unwrap();
     (weight * covariance).trace().sqrt()
 }
 
@@ -96,7 +96,7 @@ fn many_points_are_searched_by_some_and_counted_by_all() {
     let (names, covariance) = found.covariances.of_camera(0);
     let sigma = found.solution.sigma0().unwrap() * found.prepared.settings.sigma();
     let more = image_information(found.camera(0), &names, &coarse.photographs[0].pose, &scene.targets, sigma).unwrap();
-    let weight = frame_weight(found.camera(0), &names, (15, 11), Distance::Far).unwrap();
+    let weight = frame_weight(found.camera(0), &names, (31, 21), Distance::Far).unwrap();
     let other = (weight * (covariance.try_inverse().unwrap() + more).try_inverse().unwrap()).trace().sqrt();
     assert!(next.photographs[0].uncertainty < 1.02 * other, "{} {other}", next.photographs[0].uncertainty);
 }

@@ -1,5 +1,6 @@
 //! A folder of baselines: what is compared with it, and what a blessing writes.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -151,7 +152,7 @@ fn a_blessing_leaves_what_a_check_accepts() {
         adjusted.figures.insert((place, Group::Iop, "c".into()), (0..3).map(|trial| (trial, numbers)).collect());
     }
     kinds.push(("adjusted", adjusted.clone()));
-    kinds.push(("figures alone", MethodTable { points: Default::default(), images: Default::default(), ..adjusted }));
+    kinds.push(("figures alone", MethodTable { points: BTreeMap::default(), images: BTreeMap::default(), ..adjusted }));
     for coordinates in [Coordinates::Errors, Coordinates::Positions] {
         for (what, method) in &kinds {
             let folder = tempfile::tempdir().unwrap();

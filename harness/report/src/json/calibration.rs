@@ -118,6 +118,7 @@ struct CalibratedCamera {
 
 /// The standard deviation (2D) of the image of a point far away, root mean square over the whole frame after the best rotation.
 #[derive(Serialize, JsonSchema)]
+#[expect(clippy::struct_field_names, reason = "a key says its unit")]
 struct OverFrame {
     /// As the covariance of the adjustment has it, px; null where that cannot be said.
     formal_px: Option<f64>,

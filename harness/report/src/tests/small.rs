@@ -164,7 +164,7 @@ impl Family {
     fn write(&self) -> Result<PathBuf, String> {
         let at = |name: &str| self.folder.path().join(name);
         let places = Places { records: at("records"), published: at("published"), cameras: at("cameras"), reports: at("reports") };
-        fill(&places, "small", &[NAME.to_owned()]).and_then(|filled| filled.put()).map_err(|error| error.to_string())?;
+        fill(&places, "small", &[NAME.to_owned()]).and_then(crate::Filled::put).map_err(|error| error.to_string())?;
         Ok(at("reports/small/README.md"))
     }
 

@@ -26,6 +26,7 @@ fn read(text: &str) -> Result<CameraFile, String> {
     read_with(text, ReadOptions::default())
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "options are made where they are given")]
 fn read_with(text: &str, options: ReadOptions) -> Result<CameraFile, String> {
     parse_camera("f", text.as_bytes(), &options).map_err(|error| error.to_string())
 }
