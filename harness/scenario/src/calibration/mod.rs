@@ -79,7 +79,7 @@ pub struct Seen<'a> {
     pub stations: &'a [Station],
     /// Whether the stations are others in each trial.
     pub redrawn: bool,
-    /// Standard deviation per axis of the survey of [testfield], object units: one for all trials.
+    /// Standard deviation per axis of the survey of `[testfield]`, object units: one for all trials.
     pub survey_sigma: Option<f64>,
 }
 

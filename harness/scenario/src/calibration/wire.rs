@@ -31,11 +31,11 @@ pub struct CalibrationWire {
     pub sigma_px: Sigma,
     /// Standard deviation per axis of an error of each image point that all methods share, drawn anew in each trial, px. Default 0.
     pub floor_px: Option<Error>,
-    /// Standard deviation per axis of the control points' survey, drawn anew in each trial, object units; not beside that of [testfield], which is drawn once.
+    /// Standard deviation per axis of the control points' survey, drawn anew in each trial, object units; not beside that of `[testfield]`, which is drawn once.
     /// Default 0.
     pub survey_sigma: Option<Length>,
     /// Standard deviation per axis of control as the adjustment is told, object units; control of 0 is fixed. Default: `survey_sigma`, here or of
-    /// [testfield].
+    /// `[testfield]`.
     pub control_sigma: Option<Length>,
     /// Standard deviation per axis of each method's image coordinates, px, by its label, `pixel` apart: coordinates are then drawn and no image is rendered.
     #[schemars(with = "Option<BTreeMap<String, Error>>")]
