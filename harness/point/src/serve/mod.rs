@@ -49,13 +49,21 @@ impl Common {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Makes room for one more; false where none is to be had.
-    fn room(&self) -> bool {
+    /// Makes room for one more; false where none is to be had within `patience`.
+    fn room(&self, patience: Duration) -> bool {
         if self.count.load(Ordering::Relaxed) < MOST {
             return true;
         }
-        let oldest = self.waiting().pop_front();
-        oldest.is_some_and(|(_, stream)| stream.shutdown(Shutdown::Both).is_ok()) && self.count.load(Ordering::Relaxed) < 2 * MOST
+        // One that is sent away takes a moment to go; those that are answered now go by themselves.
+        let sent_away = self.waiting().pop_front().is_some_and(|(_, stream)| stream.shutdown(Shutdown::Both).is_ok());
+        let (most, begun) = (if sent_away { 2 * MOST } else { MOST }, Instant::now());
+        while self.count.load(Ordering::Relaxed) >= most {
+            if begun.elapsed() > patience {
+                return false;
+            }
+            thread::sleep(Duration::from_millis(1));
+        }
+        true
     }
 
     fn idle(&self) -> Duration {
@@ -107,7 +115,7 @@ impl Server {
                 let Some((stream, other)) = stream.ok().and_then(|stream| stream.try_clone().ok().map(|other| (stream, other))) else {
                     continue;
                 };
-                if !common.room() {
+                if !common.room(self.patience) {
                     continue;
                 }
                 common.count.fetch_add(1, Ordering::Relaxed);
