@@ -8,7 +8,7 @@ use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
 use crate::ended::{ITERATIONS, ended};
-use crate::{CalibrationError, Checked, Compared, Prepared, Resampled};
+use crate::{CalibrationError, Checked, Compared, OverFrame, Prepared, Resampled};
 
 /// A calibration and its quality.
 #[derive(Clone, Debug)]
@@ -31,6 +31,10 @@ pub struct Calibration<'n> {
     pub resampled: Option<Result<Resampled, String>>,
     /// What the model may leave out; empty until [`Calibration::examine`].
     pub checked: Vec<Checked>,
+    /// How well each camera is known over its frame; `None` where its interior orientation is not adjusted. Empty until [`Calibration::examine`].
+    pub over_frame: Vec<Option<OverFrame>>,
+    /// Folds inside the frame where a fisheye may see nothing more, in words: no doubts. Empty until [`Calibration::examine`].
+    pub rims: Vec<String>,
     /// Cameras that are hardly known; empty until [`Calibration::examine`].
     pub uncertain: Vec<String>,
     /// What cannot be as it is said to be, whatever the model; empty until [`Calibration::examine`].
@@ -58,6 +62,8 @@ impl Prepared {
             compared: None,
             resampled: None,
             checked: Vec::new(),
+            over_frame: Vec::new(),
+            rims: Vec::new(),
             uncertain: Vec::new(),
             impossible: Vec::new(),
         })

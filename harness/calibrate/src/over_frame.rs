@@ -26,6 +26,23 @@ pub struct OverFrame {
 }
 
 impl OverFrame {
+    /// Of a camera of a calibration; `None` where its interior orientation is not adjusted.
+    pub(crate) fn of(calibration: &Calibration<'_>, camera: usize) -> Option<Self> {
+        let (names, covariance) = calibration.covariances.of_camera(camera);
+        if names.is_empty() {
+            return None;
+        }
+        // Without rays nothing is known.
+        let weight = frame_weight(calibration.camera(camera), &names, GRID, Distance::Far).ok();
+        let root = |square: Option<f64>| square.filter(|square| !square.is_nan()).map_or(f64::INFINITY, |square| square.max(0.0).sqrt());
+        let by_images = || Some(calibration.scatter(camera, &names)?.component_mul(weight.as_ref()?).sum().max(0.0).sqrt());
+        Some(Self {
+            formal_px: root(weight.as_ref().map(|weight| weight.component_mul(&covariance).sum())),
+            by_images_px: by_images(),
+            limit_px: calibration.limit_px(camera),
+        })
+    }
+
     /// The larger of the two, px.
     pub fn px(&self) -> f64 {
         self.by_images_px.map_or(self.formal_px, |own| own.max(self.formal_px))
@@ -43,23 +60,6 @@ pub fn usual_limit_px(size: ImageSize) -> f64 {
 }
 
 impl Calibration<'_> {
-    /// How well a camera is known over its frame; `None` where its interior orientation is not adjusted.
-    pub fn over_frame(&self, camera: usize) -> Option<OverFrame> {
-        let (names, covariance) = self.covariances.of_camera(camera);
-        if names.is_empty() {
-            return None;
-        }
-        // Without rays nothing is known.
-        let weight = frame_weight(self.camera(camera), &names, GRID, Distance::Far).ok();
-        let root = |square: Option<f64>| square.filter(|square| !square.is_nan()).map_or(f64::INFINITY, |square| square.max(0.0).sqrt());
-        let by_images = || Some(self.scatter(camera, &names)?.component_mul(weight.as_ref()?).sum().max(0.0).sqrt());
-        Some(OverFrame {
-            formal_px: root(weight.as_ref().map(|weight| weight.component_mul(&covariance).sum())),
-            by_images_px: by_images(),
-            limit_px: self.limit_px(camera),
-        })
-    }
-
     /// Beyond which a camera is in doubt, px.
     pub(crate) fn limit_px(&self, camera: usize) -> f64 {
         self.prepared.settings.limit_px.unwrap_or_else(|| usual_limit_px(self.camera(camera).size()))

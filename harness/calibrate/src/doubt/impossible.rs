@@ -18,21 +18,22 @@ const CIRCLE: f64 = 75.0;
 const DIRECTIONS: u32 = 16;
 const INSIDE: f64 = 0.98;
 
-/// What is wrong for sure, in words. Of large residuals only where no check has found their cause.
-pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
+/// What is wrong for sure, in words; and folds where a fisheye may see nothing more. Of large residuals only where no check has found their cause.
+pub(super) fn found(calibration: &Calibration<'_>) -> (Vec<String>, Vec<String>) {
     let explained = calibration.checked.iter().any(|checked| checked.doubt().is_some());
-    let cameras =
-        (0..calibration.cameras()).flat_map(|camera| folded(calibration, camera).into_iter().chain(of_no_lens(calibration, camera)));
-    outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).chain(cameras).collect()
+    let mut found: Vec<String> = outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).collect();
+    let mut rims = Vec::new();
+    for camera in 0..calibration.cameras() {
+        if let Some((fold, angle)) = fold_of(calibration.camera(camera)) {
+            let to = if angle < CIRCLE.to_radians() { &mut found } else { &mut rims };
+            to.push(folded(fold, angle, &calibration.of(camera)));
+        }
+        found.extend(of_no_lens(calibration, camera));
+    }
+    (found, rims)
 }
 
-/// A camera that folds over inside its own frame, nearer to its axis than the circle that a fisheye pictures ends.
-fn folded(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
-    let (found, angle) = fold_of(calibration.camera(camera))?;
-    (angle < CIRCLE.to_radians()).then(|| folds(found, angle, &calibration.of(camera)))
-}
-
-/// The fold of a camera and the angle from its axis at which it is, radians.
+/// The fold of a camera inside its own frame and the angle from its axis at which it is, radians.
 fn fold_of(camera: &Camera) -> Option<(Fold, f64)> {
     let (found, axis) = (fold(camera)?, camera.project(Ray::from_tangent(0.0, 0.0)).ok()?);
     let angle = |k: u32| {
@@ -45,21 +46,13 @@ fn fold_of(camera: &Camera) -> Option<(Fold, f64)> {
 }
 
 /// A fold in words.
-fn folds(fold: Fold, angle: f64, of: &str) -> String {
+fn folded(fold: Fold, angle: f64, of: &str) -> String {
     format!(
         "the camera{of} folds over {:.0} px from the image of its axis ({:.0} degrees): {:.1} % of the frame have no ray; fewer parameters, or points near the borders, decide",
         fold.radius_px,
         angle.to_degrees(),
         100.0 * fold.share
     )
-}
-
-impl Calibration<'_> {
-    /// A fold inside the frame of a camera, in words, where it is no doubt: where a fisheye sees nothing more.
-    pub fn fold_words(&self, camera: usize) -> Option<String> {
-        let (fold, angle) = fold_of(self.camera(camera))?;
-        Some(folds(fold, angle, &self.of(camera))).filter(|words| !self.impossible.contains(words))
-    }
 }
 
 /// What no lens has, beyond the points too.

@@ -19,7 +19,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::ended::ended;
 use crate::resampled::MOST;
-use crate::{Calibration, Checked, Finding, Resampled, SHARE, Verdict};
+use crate::{Calibration, Checked, Finding, OverFrame, Resampled, SHARE, Verdict};
 
 /// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
 pub(crate) const ALPHA: f64 = 1e-4;
@@ -94,8 +94,9 @@ impl Calibration<'_> {
             ("one pose for all rows of an image", shutter),
         ];
         self.checked = all.map(|(what, verdict)| Checked { what, verdict }).into();
+        self.over_frame = (0..self.cameras()).map(|camera| OverFrame::of(self, camera)).collect();
         self.uncertain = uncertain::found(self);
-        self.impossible = impossible::found(self);
+        (self.impossible, self.rims) = impossible::found(self);
     }
 
     /// The checks that adjust again; of many image points none, which would take as long and as much memory once more.

@@ -21,7 +21,7 @@ pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
 }
 
 fn little(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
-    let known = calibration.over_frame(camera).filter(|known| !known.is_within())?;
+    let known = calibration.over_frame[camera].filter(|known| !known.is_within())?;
     let whose = calibration.of(camera);
     let sigma = if known.px().is_finite() { format!("to {} px", plain(known.px())) } else { "to nothing that could be said".into() };
     Some(format!(
@@ -32,7 +32,7 @@ fn little(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
 
 /// Errors that belong together in an image: leaving images out moves the camera by far more than its covariance says.
 fn together(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
-    let known = calibration.over_frame(camera)?;
+    let known = calibration.over_frame[camera]?;
     let times = known.by_images_px.filter(|px| *px > LEAST_PX)? / known.formal_px;
     (times > SHARE).then(|| {
         format!(

@@ -84,10 +84,7 @@ fn mirrored(points: &Points, settings: &Settings) -> impl Iterator<Item = (&'sta
 }
 
 fn moved(points: &Points, to: impl Fn(PixelPoint) -> PixelPoint) -> Points {
-    let mut moved = Points::default();
-    for mut row in points.rows() {
-        row.start.position = to(row.start.position);
-        moved.push(row.image, row.target, row.start);
-    }
+    let mut moved = points.clone();
+    moved.move_each(to);
     moved
 }

@@ -1,4 +1,4 @@
-//! Images of another size than is stated, and lengths that are in another unit: signs other than residuals tell.
+//! Images of another size than is stated: the principal point tells, and no residual.
 
 use calibench_model::camera::{CameraModel, Ray};
 

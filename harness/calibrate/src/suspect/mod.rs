@@ -26,7 +26,7 @@ pub const MOST_TRIED: usize = 100_000;
 /// What an input may be in truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suspected {
-    /// A word for programs: `lens`, `raster`, `axes`, `up`, `spacing`, `stretch`, `size` or `scale`.
+    /// A word for programs: `lens`, `raster`, `axes`, `up`, `spacing`, `stretch` or `size`.
     pub kind: &'static str,
     /// What it may be, with its estimate where it has one, and what to do.
     pub what: String,

@@ -51,7 +51,7 @@ fn the_standard_deviation_over_the_frame_is_that_of_trials() {
                 let known = |calibration: &Calibration<'_>| {
                     let options = DifferenceOptions { columns: 31, ..DifferenceOptions::default() };
                     let apart = difference(calibration.camera(0), &lens(), &options).unwrap().spread.rms_px;
-                    let known = calibration.over_frame(0).unwrap();
+                    let known = calibration.over_frame[0].unwrap();
                     assert!(known.is_within() && calibration.doubts().is_empty(), "{known:?} {:?}", calibration.doubts());
                     [apart, known.formal_px, known.by_images_px.unwrap()].map(|px| px * px)
                 };
@@ -69,7 +69,7 @@ fn the_standard_deviation_over_the_frame_is_that_of_trials() {
 fn a_camera_that_is_hardly_known_is_in_doubt() {
     let doubts = |limit_px: Option<f64>| {
         let read = |calibration: &Calibration<'_>| {
-            (calibration.over_frame(0).unwrap(), calibration.doubts().into_iter().map(str::to_owned).collect::<Vec<_>>())
+            (calibration.over_frame[0].unwrap(), calibration.doubts().into_iter().map(str::to_owned).collect::<Vec<_>>())
         };
         calibrated(&noisy(inclined(0.03), 1), &Settings { limit_px, ..settings("opencv5") }, read).unwrap()
     };
@@ -94,7 +94,7 @@ fn views_straight_onto_a_plane_determine_no_camera() {
     }
     for model in ["opencv4", "opencv5", "opencv8", "photogrammetric", "metashape", "opencv-fisheye", "eucm", "double-sphere"] {
         for seed in 0..4 {
-            let read = |calibration: &Calibration<'_>| (calibration.over_frame(0), calibration.doubts().len());
+            let read = |calibration: &Calibration<'_>| (calibration.over_frame[0], calibration.doubts().len());
             match calibrated(&noisy(Scene { poses: frontal.poses.clone(), ..inclined(0.0) }, seed), &settings(model), read) {
                 Err(error) => assert!(error.contains("not determined") || error.contains("converge"), "{model}: {error}"),
                 Ok((known, doubts)) => assert!(doubts > 0, "{model}: {known:?}"),

@@ -30,11 +30,8 @@ fn suspects(points: &Points, control: &[ControlRow], settings: &Settings) -> Vec
 }
 
 fn moved(points: &Points, to: impl Fn(PixelPoint) -> PixelPoint) -> Points {
-    let mut moved = Points::default();
-    for mut row in points.rows() {
-        row.start.position = to(row.start.position);
-        moved.push(row.image, row.target, row.start);
-    }
+    let mut moved = points.clone();
+    moved.move_each(to);
     moved
 }
 

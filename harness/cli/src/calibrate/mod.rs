@@ -8,6 +8,7 @@ use calibench_calibrate::{
 use calibench_exchange::{
     ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, Reading, read_control, read_observed_stations,
 };
+use calibench_model::CornerPoint;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
 use calibench_photographs::{Chessboard, Corners, Photo, Reader, board_of};
@@ -167,7 +168,7 @@ impl Calibrate {
             (Some(points), Some(control), _) => {
                 let PointFile { mut points, lost } = inputs::measured(points)?;
                 if let Some(Origin::Corner) = self.origin {
-                    points.take_from_corner();
+                    points.move_each(|at| CornerPoint { x: at.x, y: at.y }.to_pixel());
                 }
                 Ok(Input {
                     points,

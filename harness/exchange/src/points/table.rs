@@ -1,6 +1,6 @@
 //! Image points, column by column.
 
-use calibench_model::{Affine, CornerPoint, Covariance, PixelPoint, Start, TargetKind};
+use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind};
 
 use super::{Names, PointRow};
 
@@ -63,9 +63,9 @@ impl Points {
         self.covariance.push(index, room, start.covariance);
     }
 
-    /// Takes positions of which (0, 0) is the outer corner of the first pixel, px, as ours, of which it is its centre.
-    pub fn take_from_corner(&mut self) {
-        self.position.iter_mut().for_each(|at| *at = CornerPoint { x: at.x, y: at.y }.to_pixel());
+    /// Changes all positions, px.
+    pub fn move_each(&mut self, to: impl Fn(PixelPoint) -> PixelPoint) {
+        self.position.iter_mut().for_each(|at| *at = to(*at));
     }
 
     /// Adds all points of another table.

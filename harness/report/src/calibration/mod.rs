@@ -43,11 +43,6 @@ pub(crate) fn images_of(calibration: &Calibration<'_>, camera: usize) -> impl It
     (0..calibration.solution.poses().len()).filter(move |&image| calibration.owner(image) == camera)
 }
 
-/// Whose something is, where there are several cameras.
-fn of(calibration: &Calibration<'_>, camera: usize) -> String {
-    calibration.of(camera)
-}
-
 #[cfg(test)]
 mod page_tests;
 #[cfg(test)]

@@ -11,7 +11,6 @@ use calibench_model::camera::{CameraModel, ImageSize};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::of;
 use super::pictures::named;
 use super::uncertainty::measured;
 use crate::canvas::COLOURS;
@@ -36,7 +35,7 @@ impl NextSection {
     pub(super) fn of(calibration: &Calibration<'_>) -> Self {
         let mut section = Self { text: String::new(), pictures: Vec::new(), figures: Figures::new() };
         for camera in 0..calibration.cameras() {
-            let _ = write!(section.text, "\n## What to photograph next{}\n\n", of(calibration, camera));
+            let _ = write!(section.text, "\n## What to photograph next{}\n\n", calibration.of(camera));
             match calibration.next(camera) {
                 Ok(next) => section.camera(calibration, camera, &next),
                 Err(why) => {

@@ -15,7 +15,7 @@ use super::next::NextSection;
 use super::pictures::Picture;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, images_of, of, pictures, sets_page, tables};
+use super::{board, checks, discs, images_of, pictures, sets_page, tables};
 use crate::corners::Pictured;
 use crate::markdown::MarkdownTable;
 use crate::plain;
@@ -48,7 +48,7 @@ pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], doub
 fn facts_and_parameters(calibration: &Calibration<'_>) -> String {
     let mut text = format!("{}\n", facts(calibration));
     for camera in 0..calibration.cameras() {
-        let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
+        let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, calibration.of(camera));
         text.push_str(&parameters(calibration, camera).render());
     }
     text + &format!("\nStandard deviations {}; {}.\n", scaled(calibration), by_images(calibration))
@@ -80,7 +80,7 @@ pub fn summary(calibration: &Calibration<'_>) -> String {
     let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("{headline}\n\n"));
     let mut text = headline + &facts(calibration).replace("- ", "");
     for camera in 0..calibration.cameras() {
-        let name = of(calibration, camera);
+        let name = calibration.of(camera);
         let _ = write!(
             text,
             "\n{}{}",
@@ -119,7 +119,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let counts = solution.counts();
     let control = prepared.survey.control_points();
     let models = (0..calibration.cameras()).map(|camera| {
-        let (name, model) = (of(calibration, camera), calibration.camera(camera).convention().name);
+        let (name, model) = (calibration.of(camera), calibration.camera(camera).convention().name);
         let images = if name.is_empty() { String::new() } else { format!(", {} images", images_of(calibration, camera).count()) };
         format!("camera model{name}: {model}{images}")
     });
@@ -133,7 +133,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
         ),
         format!("datum: {}", settings.datum.words()),
     ]);
-    lines.extend(prepared.origins.iter().enumerate().map(|(camera, origin)| format!("start{}: {origin}", of(calibration, camera))));
+    lines.extend(prepared.origins.iter().enumerate().map(|(camera, origin)| format!("start{}: {origin}", calibration.of(camera))));
     lines.extend([
         format!(
             "{} observations, {} constraints, {} unknowns, redundancy {}",
@@ -156,11 +156,11 @@ fn facts(calibration: &Calibration<'_>) -> String {
 
 /// How well a camera is known, which is what decides whether it may be used.
 fn over_frame(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
-    let known = calibration.over_frame(camera)?;
+    let known = calibration.over_frame.get(camera).copied().flatten()?;
     let by_images = known.by_images_px.map_or_else(String::new, |px| format!(", by leaving images out {} px", plain(px)));
     Some(format!(
         "known{} to {} px over the frame (standard deviation, RMS{by_images}; in doubt beyond {} px)",
-        of(calibration, camera),
+        calibration.of(camera),
         plain(known.formal_px),
         plain(known.limit_px)
     ))
@@ -192,7 +192,7 @@ fn unit_weight(calibration: &Calibration<'_>, sigma0: f64) -> String {
 fn observed(calibration: &Calibration<'_>) -> Option<String> {
     let settings = &calibration.prepared.settings;
     let prior = |(camera, prior): (usize, &calibench_calibrate::Prior)| {
-        format!("{}{} = {} \u{b1} {}", prior.parameter, of(calibration, camera), prior.value, prior.sigma)
+        format!("{}{} = {} \u{b1} {}", prior.parameter, calibration.of(camera), prior.value, prior.sigma)
     };
     let parameters = settings.cameras.iter().enumerate().flat_map(|(camera, optics)| optics.priors.iter().map(move |one| (camera, one)));
     let parameters = parameters.map(prior);

@@ -29,7 +29,7 @@ pub(crate) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     let doubts = calibration.doubts();
     let rivals = calibration.prepared.rivals.iter().map(|rival| rival.words(&calibration.of(rival.camera)));
     warnings.extend(rivals.filter(|words| !doubts.contains(&words.as_str())));
-    warnings.extend((0..calibration.cameras()).filter_map(|camera| calibration.fold_words(camera)));
+    warnings.extend(calibration.rims.iter().cloned());
     warnings.extend(board::warning(calibration));
     warnings.extend(discs::warnings(calibration));
     warnings.extend(held(calibration));

@@ -302,7 +302,7 @@ fn camera(calibration: &Calibration<'_>, index: usize, tests: &[Significance]) -
         name: calibration.name_of(index).to_owned(),
         start: prepared.origins.get(index).cloned().unwrap_or_default(),
         images: images_of(calibration, index).count(),
-        over_frame: calibration.over_frame(index).map(|known| OverFrame {
+        over_frame: calibration.over_frame.get(index).copied().flatten().map(|known| OverFrame {
             formal_px: Some(known.formal_px).filter(|px| px.is_finite()),
             by_images_px: known.by_images_px.filter(|px| px.is_finite()),
             limit_px: known.limit_px,

@@ -60,7 +60,7 @@ pub(super) fn page(
     page.markdown(text, &mut figures, &groups);
     for of in &cameras {
         if let Some(figure) = maps::distortion(of) {
-            page.section(&format!("Distortion{}", super::of(calibration, of.camera)), figure);
+            page.section(&format!("Distortion{}", calibration.of(of.camera)), figure);
         }
     }
     page.section("The network in space", network::figure(calibration));
