@@ -15,7 +15,7 @@ fn ratio(sigma: f64) -> f64 {
     let (mut sum, mut squares, mut reported) = (0.0, 0.0, 0.0);
     for trial in 0..trials {
         let mut image = clean.clone();
-        let key = Key { seed: 11, scenario: "covariance", trial, view: "", target: "" };
+        let key = Key { seed: 11, of: "covariance", trial, view: "", target: "" };
         add_grey_noise(&mut image, sigma, &mut stream(key, Purpose::GreyNoise));
         let found = Forstner::new(11).measure(&image, &Start::at(PixelPoint::new(20.0, 21.0))).unwrap();
         sum += found.position.x;

@@ -61,7 +61,7 @@ fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
     let calibration = views.calibration.as_ref().unwrap();
     let trial = first_trial(&scenario);
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
-    let key = Key { seed: scenario.seed, scenario: NAME, trial: 0, view: "", target: "" };
+    let key = Key { seed: scenario.seed, of: NAME, trial: 0, view: "", target: "" };
     let observed = observe(&job, &trial.points, key);
     let name = |target: usize| views.field.targets[target].id.clone();
     let row = |point: &ImagePoint| PointRow {
@@ -148,7 +148,7 @@ fn what_fails_is_a_row_with_its_reason() {
     let views = views(&scenario);
     let calibration = views.calibration.as_ref().unwrap();
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
-    let key = Key { seed: 1, scenario: NAME, trial: 0, view: "", target: "" };
+    let key = Key { seed: 1, of: NAME, trial: 0, view: "", target: "" };
     // An operator that measured nothing.
     let all = calibrate(&job, &[], &[0], key);
     assert!(!all.is_empty());

@@ -21,7 +21,7 @@ use calibench_synth::testfield::Coded;
 use calibench_synth::view::{TargetTruth, View, Visibility};
 
 const SIDE: u32 = 240;
-const KEY: Key<'static> = Key { seed: 1988, scenario: "location", trial: 0, view: "", target: "" };
+const KEY: Key<'static> = Key { seed: 1988, of: "location", trial: 0, view: "", target: "" };
 const LEVELS: [f64; 2] = [46.0, 26.0];
 const TURNS: [f64; 4] = [0.0, 90.0, 180.0, 270.0];
 /// Targets of a square, and groups of squares, of which two are far from each other.

@@ -73,13 +73,13 @@ impl Render {
         let project = context.folder()?;
         let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario), ("render", project.as_deref()))?;
         let seed = self.seed.unwrap_or(scenario.seed);
-        let key = |trial| Key { seed, scenario: &scenario.name, trial, view: "", target: "" };
+        let key = |trial| Key { seed, of: &scenario.drawn, trial, view: "", target: "" };
         let trials = self.trials.map_or(self.trial..self.trial + 1, |trials| 0..trials);
         let mut lists = Lists::default();
         output.replace::<RunError>(|folder| {
             match &scenario.subject {
                 Subject::Views(subject) => self.views(context, &scenario, subject, trials.map(key), folder, &mut lists)?,
-                Subject::Scene(subject) => trials.map(key).try_for_each(|key| self.scene(subject, key, folder, &mut lists))?,
+                Subject::Scene(subject) => trials.map(key).try_for_each(|key| self.scene(&scenario.name, subject, key, folder, &mut lists))?,
                 Subject::Photographs(_) | Subject::Printed(_) => return Err(RunError::NothingToRender),
             }
             truth::write_starts(folder, "starts.csv", &lists.starts)?;
@@ -97,11 +97,11 @@ impl Render {
         if self.trials.is_some() { format!("{view}-trial-{:04}", key.trial) } else { view.to_owned() }
     }
 
-    /// An image in the list of images.
-    fn listed(&self, view: &str, (image, deep): (&Image, bool), key: Key<'_>) -> RenderedImage {
+    /// An image in the list of images of a scenario.
+    fn listed(&self, scenario: &str, view: &str, (image, deep): (&Image, bool), key: Key<'_>) -> RenderedImage {
         RenderedImage {
             image: kept_image_name(&self.name(view, key)),
-            scenario: key.scenario.to_owned(),
+            scenario: scenario.to_owned(),
             seed: key.seed,
             trial: key.trial,
             view: view.to_owned(),
@@ -112,7 +112,7 @@ impl Render {
     /// Draws the image of one station.
     fn station<'p>(
         &self,
-        subject: &ViewsSubject,
+        scenario: &str,
         prepared: &'p Prepared<'_>,
         view: &'p PreparedView<'_>,
         key: Key<'_>,
@@ -122,23 +122,23 @@ impl Render {
         let (exposure, deep) = (prepared.image(view, key)?, prepared.is_deep());
         let (written, (starts, listed)) = rayon::join(
             || folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, deep)),
-            || (views::starts(prepared, view, &exposure.image, key), self.listed(&view.station.name, (&exposure.image, deep), key)),
+            || (views::starts(prepared, view, &exposure.image, key), self.listed(scenario, &view.station.name, (&exposure.image, deep), key)),
         );
         written?;
         if self.noise_free {
             folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
         }
-        truth::write_view(folder, &name, subject, view)?;
+        truth::write_view(folder, &name, prepared.subject, view)?;
         let clipped = truth::clipping_note(&name, exposure.clipped, exposure.image.grey().len());
         Ok(Drawn {
             row: truth::StationRow::new(view.station, &name, exposure.clipped),
             starts,
             listed,
-            notes: clipped.into_iter().chain(truth::warnings(subject, view, &name)).collect(),
+            notes: clipped.into_iter().chain(truth::warnings(prepared.subject, view, &name)).collect(),
         })
     }
 
-    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &NewFolder, lists: &mut Lists) -> Result<(), RunError> {
+    fn scene(&self, scenario: &str, subject: &SceneSubject, key: Key<'_>, folder: &NewFolder, lists: &mut Lists) -> Result<(), RunError> {
         if let Some(name) = self.stations.iter().find(|name| *name != VIEW) {
             return Err(RunError::NoStation { name: name.clone(), known: VIEW.into() });
         }
@@ -156,7 +156,7 @@ impl Render {
         for (target, start) in scene.targets.iter().zip(starts(subject, &exposure.image, &scene, key)) {
             start.into_iter().for_each(|start| lists.starts.push(&kept_image_name(&name), &target.id, start));
         }
-        lists.images.push(self.listed(VIEW, (&exposure.image, subject.is_deep()), key));
+        lists.images.push(self.listed(scenario, VIEW, (&exposure.image, subject.is_deep()), key));
         lists.notes.extend(truth::clipping_note(&name, exposure.clipped, exposure.image.grey().len()));
         Ok(())
     }
@@ -199,7 +199,7 @@ impl Render {
         let prepared = Prepared::of(subject, &stations, key)?;
         let progress = Progress::start(&scenario.name, stations.len() as u64, context.quiet);
         let draw = |view| {
-            let drawn = self.station(subject, &prepared, view, key, folder);
+            let drawn = self.station(&scenario.name, &prepared, view, key, folder);
             progress.step();
             drawn
         };

@@ -207,13 +207,13 @@ type Picture = (Image<'static>, Vec<(String, PixelPoint)>);
 fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture, String>, Failure> {
     match &scenario.subject {
         Subject::Scene(subject) => {
-            let key = Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: calibench_run::VIEW, target: "" };
+            let key = Key { seed: scenario.seed, of: &scenario.drawn, trial: 0, view: calibench_run::VIEW, target: "" };
             let truth = trial_truth(subject, key);
             let image = trial_picture(subject, &subject.renderer()?, &truth, key)?.image;
             Ok(Ok((image, truth.targets.into_iter().map(|target| (target.id, target.at)).collect())))
         }
         Subject::Views(subject) => {
-            let key = Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: "", target: "" };
+            let key = Key { seed: scenario.seed, of: &scenario.drawn, trial: 0, view: "", target: "" };
             let prepared = Prepared::new(subject, key)?;
             let Some(view) = prepared.views.first() else { return Ok(Err("the scenario has no station".into())) };
             let image = prepared.image(view, key)?.image;

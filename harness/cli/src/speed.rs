@@ -68,7 +68,7 @@ impl SpeedCommand {
                 let message = format!("`{}` applies calibrations and measures nothing: name methods with -m", scenario.name);
                 return Err(Failure::input(message));
             }
-            let (image, starts) = first_image(&scenario.name, scenario.seed, subject)?;
+            let (image, starts) = first_image(scenario, subject)?;
             let board = subject.sheet.and_then(|board| Sought::new(board).ok());
             let methods = if methods.is_empty() { &scenario.methods } else { &methods };
             all_busy(methods, starts.iter().filter_map(|start| start.kind))

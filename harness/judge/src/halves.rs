@@ -19,7 +19,7 @@ pub const COLUMNS: usize = 13;
 /// The views of the two halves of split `split`: `views` shuffled, the first half the smaller if their number is odd. Both in the order of `views`.
 pub fn halves(views: &[usize], (seed, scenario): (u64, &str), split: u64) -> [Vec<usize>; 2] {
     let mut order: Vec<usize> = views.to_vec();
-    order.shuffle(&mut stream(Key { seed, scenario, trial: split, view: "", target: "" }, Purpose::Split));
+    order.shuffle(&mut stream(Key { seed, of: scenario, trial: split, view: "", target: "" }, Purpose::Split));
     let (first, second) = order.split_at(views.len() / 2);
     [first, second].map(|half| {
         let mut half = half.to_vec();

@@ -68,7 +68,7 @@ pub struct Options {
     pub splits: u64,
     /// The seed of the splits.
     pub seed: u64,
-    /// The name under which the splits are drawn: the scenario's.
+    /// For what the splits are drawn: other names draw others under one seed.
     pub name: String,
     /// A calibration that somebody published of these photographs.
     pub published: Option<Camera>,

@@ -148,7 +148,7 @@ impl BoardFinder for Asked {
 /// The places of `count` starts in an order that is the same whenever there are as many.
 fn shuffled(count: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
-    let key = Key { seed: 0, scenario: "", trial: count as u64, view: "", target: "" };
+    let key = Key { seed: 0, of: "", trial: count as u64, view: "", target: "" };
     order.shuffle(&mut stream(key, Purpose::Shown));
     order
 }

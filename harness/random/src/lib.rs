@@ -58,8 +58,8 @@ pub enum Purpose {
 pub struct Key<'a> {
     /// The scenario's seed.
     pub seed: u64,
-    /// The scenario's name: two scenarios with one seed share no numbers.
-    pub scenario: &'a str,
+    /// For what they are drawn: scenarios that picture something else share no numbers under one seed.
+    pub of: &'a str,
     /// Counted from 0.
     pub trial: u64,
     /// The image's name, or "" for what concerns all of them.
@@ -74,7 +74,7 @@ pub fn stream(key: Key<'_>, purpose: Purpose) -> ChaCha8Rng {
     for number in [key.seed, key.trial, purpose as u64] {
         hasher.update(&number.to_le_bytes());
     }
-    for text in [key.scenario, key.view, key.target] {
+    for text in [key.of, key.view, key.target] {
         // The length keeps ("ab", "c") apart from ("a", "bc").
         hasher.update(&(text.len() as u64).to_le_bytes());
         hasher.update(text.as_bytes());
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use rand::RngExt;
 
-    const KEY: Key<'_> = Key { seed: 1, scenario: "s", trial: 2, view: "ab", target: "c" };
+    const KEY: Key<'_> = Key { seed: 1, of: "s", trial: 2, view: "ab", target: "c" };
 
     fn first(key: Key<'_>, purpose: Purpose) -> u64 {
         stream(key, purpose).random()
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(reference, first(KEY, Purpose::Phase));
         let others = [
             first(Key { seed: 2, ..KEY }, Purpose::Phase),
-            first(Key { scenario: "t", ..KEY }, Purpose::Phase),
+            first(Key { of: "t", ..KEY }, Purpose::Phase),
             first(Key { trial: 3, ..KEY }, Purpose::Phase),
             first(Key { view: "a", target: "bc", ..KEY }, Purpose::Phase),
             first(Key { target: "d", ..KEY }, Purpose::Phase),

@@ -35,7 +35,7 @@ mod tests {
     /// The names of the field's targets say the same.
     #[test]
     fn seconds_are_those_of_the_field() {
-        let key = Key { seed: 4, scenario: "number", trial: 0, view: "", target: "" };
+        let key = Key { seed: 4, of: "number", trial: 0, view: "", target: "" };
         let field = Coded::paper().generate(key).unwrap();
         for square in field.targets.chunks(16) {
             let told: Vec<Told> = square.iter().map(|t| (t.kind, t.id.contains("large"), t.at)).collect();

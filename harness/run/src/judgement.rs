@@ -49,7 +49,7 @@ fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -
         pitch_um: wanted.pitch_um,
         splits: wanted.splits,
         seed: plan.seed,
-        name: plan.scenario.name.clone(),
+        name: plan.scenario.drawn.clone(),
         published: published.as_ref().and_then(|camera| Some(camera.as_ref().ok()?.camera)),
         published_sigma: published.as_ref().and_then(|camera| stated_sigma(camera.as_ref().ok()?)),
     };

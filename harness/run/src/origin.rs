@@ -39,7 +39,7 @@ pub fn origin_of(finder: &dyn BoardFinder, board: Board) -> Result<Origin, RunEr
     let (mut errors, mut points) = (Vec::new(), 0);
     for phase in 0..PHASES * PHASES {
         let subject = pictured(&sought, [phase % PHASES, phase / PHASES].map(|step| step as f64 / PHASES as f64))?;
-        let key = Key { seed: 1, scenario: "phases", trial: 0, view: "", target: "" };
+        let key = Key { seed: 1, of: "phases", trial: 0, view: "", target: "" };
         let prepared = Prepared::new(&subject, key)?;
         for view in &prepared.views {
             let image = prepared.image(view, key)?.image;

@@ -54,7 +54,7 @@ impl<'a> Prepared<'a> {
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
     let Prepared { subject, renderer, bounds, light } = prepared;
     let (subject, bounds) = (*subject, bounds.as_ref());
-    let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
+    let key = Key { seed: plan.seed, of: &plan.scenario.drawn, trial: number, view: VIEW, target: "" };
     let truth = trial_truth(subject, key);
     let image = match light {
         Some(light) => spoiled(subject, subject.imaging.expose_light(light, key)?, key),

@@ -49,7 +49,7 @@ pub struct Shot {
 /// # Errors
 /// Photographs and printed figures, which are not rendered; a station that there is not; a view that cannot be pictured.
 pub fn shots(scenario: &Scenario, seed: u64, trial: u64, stations: &[String]) -> Result<Vec<Shot>, RunError> {
-    let key = Key { seed, scenario: &scenario.name, trial, view: "", target: "" };
+    let key = Key { seed, of: &scenario.drawn, trial, view: "", target: "" };
     match &scenario.subject {
         Subject::Scene(subject) => {
             known(stations, &[VIEW])?;

@@ -31,7 +31,7 @@ pub fn write_theory(plan: &Plan<'_>, run: &RunInfo) -> Result<(), RunError> {
         return Ok(());
     }
     let image = read_photo(&kept_image(folder.path(), VIEW))?.image;
-    let truth = trial_truth(subject, Key { seed: plan.seed, scenario: &plan.scenario.name, trial: 0, view: VIEW, target: "" });
+    let truth = trial_truth(subject, Key { seed: plan.seed, of: &plan.scenario.drawn, trial: 0, view: VIEW, target: "" });
     let pairs = methods
         .iter()
         .flat_map(|method| truth.targets.iter().filter(|target| method.measures(Some(target.kind))).map(move |target| (method, target)));

@@ -114,7 +114,7 @@ impl Plan<'_> {
 
     /// The key of a trial's random numbers.
     pub(crate) fn key(&self, trial: u64) -> Key<'_> {
-        Key { seed: self.seed, scenario: &self.scenario.name, trial, view: "", target: "" }
+        Key { seed: self.seed, of: &self.scenario.drawn, trial, view: "", target: "" }
     }
 
     /// Whether what is made of points is made apart from them: where all of them are kept, so that they can be adjusted again.

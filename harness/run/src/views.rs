@@ -7,7 +7,7 @@ use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::results::{Calibrated, PointResult, Trial};
-use calibench_scenario::ViewsSubject;
+use calibench_scenario::{Scenario, ViewsSubject};
 use calibench_synth::bound::Work;
 use calibench_synth::raster::{Outlined, Picture, Renderer};
 use calibench_synth::sensor::Exposure;
@@ -281,8 +281,8 @@ fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Optio
 ///
 /// # Errors
 /// A view that cannot be pictured, or an image that the sensor cannot write.
-pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<(Image<'static>, Vec<Start>), RunError> {
-    let key = Key { seed, scenario, trial: 0, view: "", target: "" };
+pub fn first_image(scenario: &Scenario, subject: &ViewsSubject) -> Result<(Image<'static>, Vec<Start>), RunError> {
+    let key = Key { seed: scenario.seed, of: &scenario.drawn, trial: 0, view: "", target: "" };
     let stations = subject.stations_of(key)?;
     let prepared = Prepared::of(subject, &stations, key)?;
     let Some(view) = prepared.views.first() else { return Err(RunError::NothingToRender) };

@@ -19,7 +19,7 @@ use super::site::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::Head;
-use super::{Resolved, Scenario, Subject, ViewsSubject, figure, photographs, printed, scene};
+use super::{Drawn, Resolved, Scenario, Subject, ViewsSubject, figure, photographs, printed, scene};
 
 /// Side of the bound's window where the file gives none, px.
 const BOUND_WINDOW: usize = 15;
@@ -97,7 +97,10 @@ impl File<'_> {
         match sweep::read::take(&mut root, self.text, self.path, problems) {
             Some(sweep) => self.cells(&root, sweep, cell, problems),
             None if swept => None,
-            None => Some(read(self, root, false, problems)?.0),
+            None => {
+                let drawn = Drawn::of(&root, None);
+                Some(read(self, root, &drawn, false, problems)?.0)
+            }
         }
     }
 
@@ -105,10 +108,11 @@ impl File<'_> {
     fn cells(self, root: &DeTable<'_>, sweep: Sweep, cell: Option<usize>, problems: &mut Vec<Problem>) -> Option<Scenario> {
         let mut first: Option<(Scenario, Vec<Range<usize>>)> = None;
         let (mut kinds, mut lacking) = (Vec::new(), Vec::new());
+        let drawn = Drawn::of(root, Some(&sweep));
         for index in cell.map_or(0..sweep.cells(), |index| index..index + 1) {
             let mut found = Vec::new();
             let table = sweep.replaced(root, index, self.registry, &mut found);
-            let scenario = if found.is_empty() { read(self, table, true, &mut found) } else { None };
+            let scenario = if found.is_empty() { read(self, table, &drawn, true, &mut found) } else { None };
             kinds.extend(scenario.iter().flat_map(|(scenario, _)| scenario.kinds.clone()));
             let plain = index == 0;
             for problem in found {
@@ -143,7 +147,13 @@ fn once(kinds: &[TargetKind]) -> Vec<TargetKind> {
 /// Cells are not checked further once there are this many problems.
 const MOST_PROBLEMS: usize = 10;
 
-fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Problem>) -> Option<(Scenario, Vec<Range<usize>>)> {
+fn read(
+    file: File<'_>,
+    root: DeTable<'_>,
+    drawn: &Drawn,
+    in_sweep: bool,
+    problems: &mut Vec<Problem>,
+) -> Option<(Scenario, Vec<Range<usize>>)> {
     let File { name, text, registry, .. } = file;
     let folder = Path::new(file.path).parent().unwrap_or(Path::new(""));
     let mut resolved = Resolved::of(&root);
@@ -171,7 +181,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let methods = methods(listed, registry, problems);
     let head: Option<Head> = root.read(&TOP_TABLES, problems);
     let seed = head.as_ref().map_or(0, |head| head.seed.0);
-    let key = Key { seed, scenario: name, trial: 0, view: "", target: "" };
+    let key = |of| Key { seed, of, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
     let others = [&scene, &figure, &photographs, &judged, &calibration, &blocks, &recognition];
     let other = others.into_iter().flatten().next().map(|section| section.span.clone()).or_else(|| stray.clone());
@@ -194,7 +204,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
             None
         }
         (None, None, None, Some(_)) => {
-            let views = views.read(imaging, &start, folder, key, problems);
+            let views = views.read(imaging, &start, folder, [key(&drawn.field), key(&drawn.all)], problems);
             views.and_then(|views| adjusted.read(views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
         }
         (None, None, None, None) if transfer.is_some() => transfer
@@ -242,6 +252,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         sweep: None,
         text: text.to_owned(),
         resolved,
+        drawn: drawn.all.clone(),
     };
     Some((sensible_trials(scenario, &trials_span, in_sweep, problems), listed_at))
 }

@@ -37,6 +37,8 @@ pub struct Scenario {
     pub text: String,
     /// What it says, of a sweep its first cell.
     pub resolved: Resolved,
+    /// For what its random numbers are drawn: [`Drawn::all`](crate::Drawn::all).
+    pub drawn: String,
 }
 
 impl Scenario {

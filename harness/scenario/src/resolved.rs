@@ -12,8 +12,8 @@ const ASIDE: [&str; 7] = ["why", "source", "notes", "method", "nightly", "trials
 /// Tables that say what is made of points, and not how they come about.
 const ADJUSTED: [&str; 3] = ["calibration", "blocks", "block"];
 
-/// A scenario, or a cell of its sweep, as text: equal texts give equal results under one name and seed, from one code. Comments, order of keys and ways to write a number
-/// have no part in it.
+/// A scenario, or a cell of its sweep, as text: equal texts give equal results under one seed, from one code. Comments, order of keys and ways to write a number have no part
+/// in it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Resolved {
     /// All on which points depend: everything but what is made of them.
@@ -25,16 +25,8 @@ pub struct Resolved {
 impl Resolved {
     /// That of the table of a file.
     pub(crate) fn of(root: &DeTable<'_>) -> Self {
-        let mut resolved = Self::default();
-        let mut keys: Vec<(&str, &DeValue<'_>)> = root.iter().map(|(key, value)| (&**key.get_ref(), value.get_ref())).collect();
-        keys.sort_unstable_by_key(|(key, _)| *key);
-        for (key, value) in keys.into_iter().filter(|(key, _)| !ASIDE.contains(key)) {
-            let text = if ADJUSTED.contains(&key) { &mut resolved.adjusted } else { &mut resolved.points };
-            _ = write!(text, "{key:?}=");
-            write_value(value, text);
-            text.push('\n');
-        }
-        resolved
+        let points = |key: &str| !ASIDE.contains(&key) && !ADJUSTED.contains(&key);
+        Self { points: text_of(root, points), adjusted: text_of(root, |key| ADJUSTED.contains(&key)) }
     }
 
     /// With the camera that was read from a file, if one was.
@@ -47,11 +39,24 @@ impl Resolved {
         self
     }
 
-    /// With another scenario of this name that was read for it.
-    pub(crate) fn with_scenario(mut self, name: &str, other: &Self) -> Self {
-        _ = writeln!(self.points, "scenario {name:?}\n{}{}", other.points, other.adjusted);
+    /// With another scenario that was read for it.
+    pub(crate) fn with_scenario(mut self, other: &Self) -> Self {
+        _ = writeln!(self.points, "scenario\n{}{}", other.points, other.adjusted);
         self
     }
+}
+
+/// What the keys of a file that are `wanted` say, in one order.
+pub(crate) fn text_of(root: &DeTable<'_>, wanted: impl Fn(&str) -> bool) -> String {
+    let mut keys: Vec<(&str, &DeValue<'_>)> = root.iter().map(|(key, value)| (&**key.get_ref(), value.get_ref())).collect();
+    keys.sort_unstable_by_key(|(key, _)| *key);
+    let mut text = String::new();
+    for (key, value) in keys.into_iter().filter(|(key, _)| wanted(key)) {
+        _ = write!(text, "{key:?}=");
+        write_value(value, &mut text);
+        text.push('\n');
+    }
+    text
 }
 
 fn write_value(value: &DeValue<'_>, text: &mut String) {

@@ -30,7 +30,7 @@ impl Surroundings<'_> {
         let mut found = Vec::new();
         let mut site = |file: &Spanned<String>| {
             let (views, other) = self.views(file.get_ref())?;
-            *resolved = std::mem::take(resolved).with_scenario(&self.name_of(file.get_ref()), &other);
+            *resolved = std::mem::take(resolved).with_scenario(&other);
             let site = Site { camera: views.camera, field: views.field.clone(), stations: views.stations.clone() };
             found.push(views);
             Ok(site)
@@ -60,7 +60,7 @@ impl Surroundings<'_> {
         }
     }
 
-    /// The name that the scenario has by itself, so that its random numbers are the same.
+    /// The name that the scenario has by itself.
     fn name_of(&self, file: &str) -> String {
         let stem = Path::new(file).with_extension("").to_string_lossy().replace('\\', "/");
         self.name.rsplit_once('/').map_or_else(|| stem.clone(), |(family, _)| format!("{family}/{stem}"))

@@ -83,13 +83,13 @@ impl<'i> ViewTables<'i> {
         tables.into_iter().flatten().chain(self.explicit.first()).map(|section| section.span.clone()).next()
     }
 
-    /// Reads all of them; `span` is where the file begins, `folder` where it is, `key` that of the scenario.
+    /// Reads all of them; `span` is where the file begins, `folder` where it is, keys those of the field and of all that is pictured.
     pub fn read(
         self,
         imaging: ImagingTables<'_>,
         span: &Range<usize>,
         folder: &Path,
-        key: Key<'_>,
+        [of_field, key]: [Key<'_>; 2],
         problems: &mut Vec<Problem>,
     ) -> Option<ViewsSubject> {
         let mut missing = |name: &str, help: &str| {
@@ -109,10 +109,10 @@ impl<'i> ViewTables<'i> {
         }
         let camera = self.camera.and_then(|section| camera::read(section, folder, problems));
         let pointing = self.pointing.and_then(|section| Pointing::read(section, problems));
-        let plan = self.testfield.and_then(|section| testfield::read(section, key, problems));
+        let plan = self.testfield.and_then(|section| testfield::read(section, of_field, problems));
         let (camera, pointing, plan) = (camera?, pointing?, plan?);
         let CameraPlan { camera, file: camera_file, local } = camera;
-        let field = plan.generate(key).map_err(|error| problems.push(plan.problem(&error))).ok()?;
+        let field = plan.generate(of_field).map_err(|error| problems.push(plan.problem(&error))).ok()?;
         let imaging = imaging.read(&surroundings(&camera, &field), problems);
         let plan_of_stations = stations::read(self.stations, self.explicit, problems)?;
         let drawn = plan_of_stations.generate(&field, &camera, key);

@@ -31,7 +31,7 @@ fn main() {
 fn print(name: &str, threads: usize, design: &Design, image: &Image<'static>) {
     let Ok(sensor) = Sensor::new(design.clone()) else { return println!("{name:<44}{:>8}", "refused") };
     let Ok(pool) = ThreadPoolBuilder::new().num_threads(threads).build() else { return };
-    let key = Key { seed: 1, scenario: "perf", trial: 0, view: "v", target: "" };
+    let key = Key { seed: 1, of: "perf", trial: 0, view: "v", target: "" };
     let seconds = (0..REPEATS).map(|_| {
         let light = image.clone();
         pool.install(|| {

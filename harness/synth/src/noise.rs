@@ -35,7 +35,7 @@ mod tests {
     fn noise_has_its_mean_variance_and_no_autocorrelation() {
         let (sigma, n) = (0.02, 1_000_000);
         let mut image = Image::new(1000, 1000, vec![0.5; n]);
-        let key = Key { seed: 7, scenario: "noise", trial: 0, view: "", target: "" };
+        let key = Key { seed: 7, of: "noise", trial: 0, view: "", target: "" };
         add_grey_noise(&mut image, sigma, &mut stream(key, Purpose::GreyNoise));
         let errors: Vec<f64> = image.grey().iter().map(|&g| (f64::from(g) - 0.5) / sigma).collect();
         let mean = errors.iter().sum::<f64>() / n as f64;

@@ -65,7 +65,7 @@ mod tests {
     fn rounding_adds_a_twelfth_to_the_variance() {
         let hand = Hand { sigma: 0.5, whole_pixels: true, map: MapError::default() };
         let n = 100_000;
-        let mut rng = stream(Key { seed: 3, scenario: "hand", trial: 0, view: "", target: "" }, Purpose::Pointing);
+        let mut rng = stream(Key { seed: 3, of: "hand", trial: 0, view: "", target: "" }, Purpose::Pointing);
         let squares = (0..n).map(|i| {
             let truth = PixelPoint::new(f64::from(i) * 0.618_033_988_749_895, 0.25);
             (hand.point(truth, &mut rng).x - truth.x).powi(2)
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn a_map_is_off_by_what_is_said() {
         let (map, n) = (Affine { axx: 3.0, axy: -1.0, ayx: 4.0, ayy: 7.0 }, 20_000);
-        let mut rng = stream(Key { seed: 4, scenario: "map", trial: 0, view: "", target: "" }, Purpose::Pointing);
+        let mut rng = stream(Key { seed: 4, of: "map", trial: 0, view: "", target: "" }, Purpose::Pointing);
         assert_eq!(MapError::default().apply(map, &mut rng), map);
         let error = MapError { turn: 0.1, stretch: 0.05 };
         let (mut turns, mut lengths) = (0.0, [0.0; 2]);

@@ -74,7 +74,7 @@ impl Drawn {
     /// The network `number` of a class, by a seed: 5 to 60 images, noise of 0.05 to 1 px, fields of 10 to 140 degrees across the longer side (fisheye: 100
     /// to 220).
     pub fn network(class: Class, seed: u64, number: u64) -> Self {
-        let key = Key { seed, scenario: class.model, trial: number, view: "", target: "" };
+        let key = Key { seed, of: class.model, trial: number, view: "", target: "" };
         let mut chance = Chance(stream(key, Purpose::Layout));
         (0..class.object as u64 * 8).for_each(|_| _ = chance.unit());
         let size = [(640, 480), (1280, 1024), (1920, 1080), (4000, 3000), (2448, 2048)][(chance.unit() * 5.0) as usize];

@@ -121,7 +121,7 @@ fn write(views: usize, folder: &Path) -> Result<(), Box<dyn Error>> {
         .collect();
     let control: String = corners.iter().map(|(name, at)| format!("{name},{},{},0\n", at.x, at.y)).collect();
     fs::write(folder.join("control.csv"), format!("target,X,Y,Z\n{control}"))?;
-    let mut random = stream(Key { seed: 1, scenario: "files", trial: 0, view: "", target: "" }, Purpose::Layout);
+    let mut random = stream(Key { seed: 1, of: "files", trial: 0, view: "", target: "" }, Purpose::Layout);
     let mut within = |low: f64, high: f64| low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let middle = Point3::new(side * (columns - 1) as f64 / 2.0, side * (rows - 1) as f64 / 2.0, 0.0);
     let mut text = String::from("image,target,x,y\n");

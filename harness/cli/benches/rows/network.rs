@@ -50,7 +50,7 @@ impl Network {
             let centre = Point3::new(-4.0 + 24.0 / 9.0 * column, -3.0 + 18.0 / 4.0 * row, 18.0 + (image % 3) as f64);
             Pose::looking_at(centre, middle, Vector3::y(), std::f64::consts::FRAC_PI_2 * (image % 4) as f64)
         };
-        let mut random = stream(Key { seed: 1, scenario: "rows", trial: 0, view: "", target: "" }, Purpose::Layout);
+        let mut random = stream(Key { seed: 1, of: "rows", trial: 0, view: "", target: "" }, Purpose::Layout);
         let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let targets = (0..rows / SEEN).map(|_| Point3::new(16.0 * uniform(), 12.0 * uniform(), 2.0 * uniform())).collect();
         Self { camera, poses: (0..IMAGES).filter_map(pose).collect(), targets }
@@ -89,7 +89,7 @@ impl Network {
 
     /// Image by image, as `measure` writes them.
     fn points(&self, mut file: impl Write) -> Result<(), Box<dyn Error>> {
-        let mut random = stream(Key { seed: 1, scenario: "rows", trial: 0, view: "", target: "" }, Purpose::DrawnPoint);
+        let mut random = stream(Key { seed: 1, of: "rows", trial: 0, view: "", target: "" }, Purpose::DrawnPoint);
         let mut error = || ERROR * ((random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
         writeln!(file, "image,target,x,y")?;
         for (image, pose) in self.poses.iter().enumerate() {

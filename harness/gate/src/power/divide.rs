@@ -109,7 +109,7 @@ fn one(stored: &[Stored<'_>], number: u64) -> Division {
     let (mut tests, mut lacking): (Vec<Test>, bool) = (Vec::new(), false);
     for method in stored {
         let mut order: Vec<usize> = (0..method.trials.len()).collect();
-        let key = Key { seed: 0, scenario: method.scenario, trial: number, view: "", target: "" };
+        let key = Key { seed: 0, of: method.scenario, trial: number, view: "", target: "" };
         order.shuffle(&mut stream(key, Purpose::Split));
         let (found, missing) = judge::tests(method.scenario, method.label, &method.pairs(&order));
         tests.extend(found);

@@ -40,7 +40,7 @@ pub fn power(tables: &[&Table]) -> Vec<Outcome> {
 }
 
 fn one(table: &Table, label: &str, mutation: Mutation) -> Outcome {
-    let key = Key { seed: 0, scenario: &table.scenario, trial: 0, view: label, target: "" };
+    let key = Key { seed: 0, of: &table.scenario, trial: 0, view: label, target: "" };
     let caught = table.method(label).ok_or("there is no such method").and_then(|method| mutation.of(method, key)).map(|changed| {
         let (base, now) = (table.only(label, None), table.only(label, Some(changed)));
         let findings = compare(&base, &now, false);

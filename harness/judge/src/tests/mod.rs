@@ -55,7 +55,7 @@ fn views(key: Key<'_>, count: usize) -> Vec<Vec<PixelPoint>> {
 
 /// What operators with these standard deviations (px) measure of `count` views in a trial.
 fn material(scenario: &str, trial: u64, count: usize, sigmas: &[f64]) -> Material {
-    let key = Key { seed: 7, scenario, trial, view: "", target: "" };
+    let key = Key { seed: 7, of: scenario, trial, view: "", target: "" };
     let truth = views(key, count);
     let names: Vec<Arc<str>> = (1..=count).map(|view| format!("v{view:02}").into()).collect();
     let operator = |(index, sigma): (usize, &f64)| {

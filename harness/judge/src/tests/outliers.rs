@@ -12,7 +12,7 @@ fn named(scenario: &str, trial: u64, spoiled: Option<(usize, f64)>) -> Vec<usize
     let mut material = material(scenario, trial, 13, &[0.1]);
     if let Some((view, sigma)) = spoiled {
         let hand = Hand { sigma, whole_pixels: false, map: MapError::default() };
-        let mut rng = stream(Key { seed: 8, scenario, trial, view: "", target: "" }, Purpose::Pointing);
+        let mut rng = stream(Key { seed: 8, of: scenario, trial, view: "", target: "" }, Purpose::Pointing);
         material.operators[0].at[view].iter_mut().flatten().for_each(|at| *at = hand.point(*at, &mut rng));
     }
     let settings = options(&["opencv4"], 1).models[0].settings(SIZE, None);

@@ -93,7 +93,7 @@ impl Drawn {
     /// the middle of the frame.
     pub fn set(class: Class, seed: u64, number: u64) -> Self {
         let scenario = format!("{class:?}");
-        let mut chance = Chance(stream(Key { seed, scenario: &scenario, trial: number, view: "", target: "" }, Purpose::Layout));
+        let mut chance = Chance(stream(Key { seed, of: &scenario, trial: number, view: "", target: "" }, Purpose::Layout));
         let size = [(640, 480), (1280, 960), (1920, 1200)][(chance.within(0.0, 3.0)) as usize];
         let size = ImageSize { width: size.0, height: size.1 };
         let sigma = 0.03 * 10.0_f64.powf(chance.within(0.0, 1.0));

@@ -14,7 +14,7 @@ use nalgebra::{Point3, Vector3};
 
 use crate::{seconds, warp};
 
-const KEY: Key<'static> = Key { seed: 1, scenario: "perf", trial: 0, view: "v", target: "" };
+const KEY: Key<'static> = Key { seed: 1, of: "perf", trial: 0, view: "v", target: "" };
 
 /// The camera of the views: 22 mm, full Brown distortion, `width` x `height` px.
 pub(crate) fn camera(width: u32, height: u32) -> Camera {

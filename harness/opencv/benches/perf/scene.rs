@@ -17,7 +17,7 @@ const CELL: (usize, usize) = (40, 30);
 const RADIUS: f64 = 13.0;
 
 fn key(view: &str) -> Key<'_> {
-    Key { seed: 1, scenario: "perf", trial: 0, view, target: "" }
+    Key { seed: 1, of: "perf", trial: 0, view, target: "" }
 }
 
 /// A turned dark square in a light cell; its rightmost corner comes first. The turn keeps away from the axes of the pixels.

@@ -3,7 +3,7 @@ use calibench_synth::testfield::{Chessboard, Coded, Levels};
 
 use super::*;
 
-const KEY: Key<'_> = Key { seed: 12, scenario: "design", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 12, of: "design", trial: 0, view: "", target: "" };
 
 /// What is read off the plate alone is what the list says, where there is one.
 #[test]

@@ -43,7 +43,7 @@ impl Setting {
     }
 
     pub fn key(&self) -> Key<'static> {
-        Key { seed: self.seed, scenario: "campaign", trial: 0, view: "", target: "" }
+        Key { seed: self.seed, of: "campaign", trial: 0, view: "", target: "" }
     }
 
     pub fn testfield(&self) -> Testfield {

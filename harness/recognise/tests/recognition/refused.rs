@@ -9,7 +9,7 @@ use crate::campaign::{Setting, shots};
 use crate::{BOTH, recogniser, told};
 
 fn key(seed: u64) -> Key<'static> {
-    Key { seed, scenario: "refused", trial: 0, view: "", target: "" }
+    Key { seed, of: "refused", trial: 0, view: "", target: "" }
 }
 
 /// Uniform noise around the middle grey, as wide as told.

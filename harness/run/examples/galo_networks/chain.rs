@@ -29,7 +29,7 @@ pub struct Walked {
 
 /// Chain `chain`: the same on any thread.
 pub fn walk(chain: u64) -> Walked {
-    let mut rng = stream(Key { seed: 2011, scenario: "galo-2011/networks", trial: chain, view: "", target: "" }, Purpose::Station);
+    let mut rng = stream(Key { seed: 2011, of: "galo-2011/networks", trial: chain, view: "", target: "" }, Purpose::Station);
     // Every network has a number of its own, and with it noise of its own.
     let mut number = chain * 100_000_000;
     let (mut here, mut found) = start(&mut rng, &mut number);

@@ -73,7 +73,7 @@ pub struct Orders(Vec<[f64; 8]>);
 
 impl Orders {
     pub fn new() -> Self {
-        let mut rng = stream(Key { seed: 2007, scenario: "zhu-2007/search", trial: 0, view: "", target: "" }, Purpose::Phase);
+        let mut rng = stream(Key { seed: 2007, of: "zhu-2007/search", trial: 0, view: "", target: "" }, Purpose::Phase);
         let mut orders = Vec::new();
         while orders.len() < ORDERS {
             let mut order = PRINTED;

@@ -78,7 +78,7 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
     let points = code::digest(code::POINTS, reuse.program);
     let common = vec![
         ("format", FORMAT),
-        ("scenario", &*plan.scenario.name),
+        ("drawn", &*plan.scenario.drawn),
         ("resolved", &*plan.scenario.resolved.points),
         ("data", &*data),
         ("seed", &*seed),

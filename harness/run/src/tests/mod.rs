@@ -21,7 +21,7 @@ use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 use crate::Plan;
 
 const NAME: &str = "small/wall";
-const KEY: Key<'_> = Key { seed: 3, scenario: NAME, trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 3, of: NAME, trial: 0, view: "", target: "" };
 
 /// A wall of 12 corners in the plane Z = 0, m, seen by a camera of c = 10 mm and 5 um: 2000 px per unit of slope. Its first station stands on the Z
 /// axis, 6 m off. Coordinates are drawn from the truth; `exact` has no error.
@@ -153,7 +153,7 @@ fn trials_come_in_their_order_and_steps_are_counted() {
     assert_eq!((steps.into_inner(), plan.steps()), (40, 40));
 }
 
-/// What is drawn depends on the seed, the trial, the view and the target, and on nothing else.
+/// What is drawn depends on the seed, what is pictured, the trial, the view and the target, and on nothing else.
 #[test]
 fn the_seed_makes_the_noise() {
     let scenario = scenario(&[]);
@@ -173,6 +173,27 @@ fn the_seed_makes_the_noise() {
     assert!((rms / 0.4 - 1.0).abs() < 3.0 / (2.0_f64 * 96.0).sqrt(), "{rms}");
     assert!(a[1].points.is_empty(), "points of later trials are not kept");
     assert_eq!(a[1].calibrations.len(), 2 * 2, "two methods, two sets");
+}
+
+#[test]
+fn another_name_draws_the_same_and_another_picture_nothing_that_has_to_do_with_it() {
+    let under = |name: &str, text: &str| trials(&parse(name, "f.toml", text, &Registry::builtin()).unwrap(), 3);
+    let own = under(NAME, SCENARIO);
+    let words = SCENARIO.replace("A wall.", "Other words.").replace("whole_pixels", "# no mouse\nwhole_pixels");
+    assert_eq!(own, under("another/name", &words));
+    let hand = |trials: &[Trial]| {
+        let points = trials[0].points.iter().filter(|point| point.method == 0);
+        points.map(|point| point.outcome.kept_error().unwrap()).flat_map(|(x, y)| [x, y]).collect::<Vec<_>>()
+    };
+    let correlation = |a: &[f64], b: &[f64]| {
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        product(a, b) / (product(a, a) * product(b, b)).sqrt()
+    };
+    let wider = hand(&under(NAME, &SCENARIO.replace("[1000, 801]", "[1002, 801]")));
+    let steadier = hand(&under(NAME, &SCENARIO.replace("sigma = 0.4\nwhole", "sigma = 0.2\nwhole")));
+    // 96 coordinates that are independent: four standard deviations. A steadier hand is drawn alike.
+    assert!(correlation(&hand(&own), &wider).abs() < 4.0 / 96.0_f64.sqrt());
+    assert!((correlation(&hand(&own), &steadier) - 1.0).abs() < 1e-6);
 }
 
 #[test]

@@ -70,8 +70,8 @@ impl BoardImages {
         let (methods, ways): (Vec<usize>, Vec<&Measuring>) =
             all.filter_map(|(place, method)| Some((place, method.measured_by.as_ref()?))).unzip();
         // The field where calibrations are applied has views of its own, maybe of the same names.
-        let name = format!("{}, board", key.scenario);
-        let key = Key { scenario: &name, ..key };
+        let name = format!("{}, board", key.of);
+        let key = Key { of: &name, ..key };
         let prepared = Prepared::of(&subject, stations, key)?;
         Ok(Self { methods, views: images(&prepared, &ways, campaign.tools.detector, key)? })
     }

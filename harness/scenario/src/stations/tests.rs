@@ -5,7 +5,7 @@ use calibench_synth::testfield::{Chessboard, Levels};
 use super::*;
 use toml::de::DeTable;
 
-const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 1, of: "test", trial: 0, view: "", target: "" };
 
 fn field() -> Testfield {
     let levels = Levels::default();

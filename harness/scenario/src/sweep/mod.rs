@@ -7,7 +7,8 @@ pub mod wire;
 
 use calibench_diagnostics::Problem;
 use calibench_measure::Registry;
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 pub use axis::{Axis, Value};
 
@@ -71,6 +72,19 @@ impl Sweep {
         for (axis, value) in self.axes.iter().zip(self.values(index)) {
             if let Some(value) = value.toml() {
                 replace::replace(&mut table, axis, &value, registry, problems);
+            }
+        }
+        table
+    }
+
+    /// The table of a file with a word in the place of each swept value: the same for all cells, and whatever values there are.
+    pub(super) fn without_values<'i>(&'i self, root: &DeTable<'i>) -> DeTable<'i> {
+        let mut table = root.clone();
+        for axis in &self.axes {
+            let word = Spanned::new(axis.span.clone(), DeValue::String("swept".into()));
+            // Methods have no part in what is drawn, and a key that there is not is told elsewhere.
+            if !axis.path.starts_with("method.") {
+                replace::replace(&mut table, axis, &word, &Registry::default(), &mut Vec::new());
             }
         }
         table

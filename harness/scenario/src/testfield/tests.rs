@@ -4,7 +4,7 @@ use toml::de::DeTable;
 
 use super::*;
 
-const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 1, of: "test", trial: 0, view: "", target: "" };
 
 /// The plan of a text, or its problems as `line:column: message (help)`.
 pub fn plan(text: &str) -> Result<FieldPlan, String> {

@@ -144,7 +144,7 @@ impl LocalDistortion {
         let [columns, rows] = [size.width, size.height].map(|side| count(f64::from(side), design.correlation) as usize);
         // Of a Gaussian exp(-x^2 / L^2) on the lattice the squares add up to sqrt(pi / 2) L / step, along each axis.
         let height = design.sigma * STEP / std::f64::consts::FRAC_PI_2.sqrt();
-        let mut rng = stream(Key { seed: key.seed, scenario: "", trial: key.trial, view: "", target: "" }, Purpose::LocalDistortion);
+        let mut rng = stream(Key { seed: key.seed, of: "", trial: key.trial, view: "", target: "" }, Purpose::LocalDistortion);
         let mut normal = || height * Distribution::<f64>::sample(&StandardNormal, &mut rng);
         let weights = (0..columns * rows).map(|_| [normal(), normal()]).collect();
         Ok(Self { design, columns, rows, weights })

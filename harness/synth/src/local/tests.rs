@@ -3,7 +3,7 @@
 use super::*;
 
 const SIZE: ImageSize = ImageSize { width: 120, height: 90 };
-const KEY: Key<'_> = Key { seed: 20, scenario: "s", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 20, of: "s", trial: 0, view: "", target: "" };
 const DESIGN: LocalDesign = LocalDesign { sigma: 0.4, correlation: 15.0 };
 
 fn field(design: LocalDesign, seed: u64) -> LocalDistortion {
@@ -124,7 +124,7 @@ fn the_steepest_field_is_one_to_one() {
 fn seed_and_trial_make_it_and_nothing_else() {
     let of = |key| LocalDistortion::draw(DESIGN, SIZE, key).unwrap();
     let one = of(KEY);
-    assert_eq!(one, of(Key { scenario: "another", view: "1211", target: "t", ..KEY }));
+    assert_eq!(one, of(Key { of: "another", view: "1211", target: "t", ..KEY }));
     assert_ne!(one, of(Key { seed: 21, ..KEY }));
     assert_ne!(one, of(Key { trial: 1, ..KEY }));
 }

@@ -8,7 +8,7 @@ use nalgebra::{Point3, Vector3};
 use super::*;
 use crate::testfield::{Chessboard, Levels};
 
-const KEY: Key<'_> = Key { seed: 3, scenario: "stations", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 3, of: "stations", trial: 0, view: "", target: "" };
 
 fn board() -> Testfield {
     let board = Chessboard {

@@ -119,7 +119,7 @@ mod tests {
 
     use super::*;
 
-    const KEY: Key<'_> = Key { seed: 11, scenario: "board", trial: 0, view: "", target: "" };
+    const KEY: Key<'_> = Key { seed: 11, of: "board", trial: 0, view: "", target: "" };
 
     fn sheet(text: &str, print_noise: f64) -> BoardSheet {
         BoardSheet { board: text.parse().unwrap(), margin: 10.0, bend: None, print_noise, levels: Levels::default(), background: 0.2 }

@@ -128,7 +128,7 @@ mod tests {
     use super::*;
     use crate::overlap::overlap;
 
-    const KEY: Key<'_> = Key { seed: 11, scenario: "board", trial: 0, view: "", target: "" };
+    const KEY: Key<'_> = Key { seed: 11, of: "board", trial: 0, view: "", target: "" };
 
     fn board() -> Chessboard {
         let levels = Levels { paper: 0.9, ink: 0.1 };

@@ -184,7 +184,7 @@ mod tests {
     use super::*;
     use crate::overlap::overlap;
 
-    const KEY: Key<'_> = Key { seed: 2007, scenario: "house", trial: 0, view: "", target: "" };
+    const KEY: Key<'_> = Key { seed: 2007, of: "house", trial: 0, view: "", target: "" };
 
     /// The reflectance at a point: that of the innermost area.
     fn level(field: &Testfield, at: [f64; 2]) -> f64 {

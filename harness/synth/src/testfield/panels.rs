@@ -80,7 +80,7 @@ impl Panels {
 mod tests {
     use super::*;
 
-    const KEY: Key<'_> = Key { seed: 5, scenario: "wall", trial: 0, view: "", target: "" };
+    const KEY: Key<'_> = Key { seed: 5, of: "wall", trial: 0, view: "", target: "" };
 
     fn panels() -> Panels {
         let levels = Levels::default();

@@ -3,7 +3,7 @@
 use super::*;
 use crate::tests::{NO_CORNER, at as place, lost as away, measured, method};
 
-const KEY: Key<'_> = Key { seed: 0, scenario: "f/s", trial: 0, view: "m", target: "" };
+const KEY: Key<'_> = Key { seed: 0, of: "f/s", trial: 0, view: "m", target: "" };
 
 fn kept(dx: f64, dy: f64) -> Entry {
     measured([dx, dy], Some(0.5))

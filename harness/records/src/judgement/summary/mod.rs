@@ -307,7 +307,7 @@ fn pooled(views: &BTreeMap<Arc<str>, (f64, usize)>, seed: u64) -> Option<Estimat
     if squares.is_empty() {
         return None;
     }
-    let mut rng = stream(Key { seed, scenario: "interval over views", trial: 0, view: "", target: "" }, Purpose::Split);
+    let mut rng = stream(Key { seed, of: "interval over views", trial: 0, view: "", target: "" }, Purpose::Split);
     let mut drawn: Vec<f64> =
         (0..DRAWS).map(|_| root(&mut (0..squares.len()).map(|_| squares[rng.random_range(0..squares.len())]))).collect();
     drawn.sort_by(f64::total_cmp);

@@ -86,7 +86,7 @@ fn shares(cells: &[&Cell], seed: u64) -> Vec<Share> {
         (cell.parameters as f64 * n.ln() / n).exp()
     };
     let allowances: Vec<f64> = cells.iter().map(|cell| allowance(cell)).collect();
-    let mut rng = stream(Key { seed, scenario: "models by views", trial: 0, view: "", target: "" }, Purpose::Split);
+    let mut rng = stream(Key { seed, of: "models by views", trial: 0, view: "", target: "" }, Purpose::Split);
     let mut found = vec![Share::default(); cells.len()];
     for _ in 0..DRAWS {
         let drawn: Vec<usize> = (0..views.len()).map(|_| rng.random_range(0..views.len())).collect();

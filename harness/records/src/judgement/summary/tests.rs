@@ -166,7 +166,7 @@ fn an_interval_over_views_leaves_as_much_out_below_as_above() {
         of.iter().map(|(square, count)| square * count / corners).sum::<f64>().sqrt()
     };
     close(value, rms(&squares));
-    let mut rng = stream(Key { seed: 5, scenario: "interval over views", trial: 0, view: "", target: "" }, Purpose::Split);
+    let mut rng = stream(Key { seed: 5, of: "interval over views", trial: 0, view: "", target: "" }, Purpose::Split);
     let drawn: Vec<f64> =
         (0..2000).map(|_| rms(&(0..9).map(|_| squares[rng.random_range(0..squares.len())]).collect::<Vec<_>>())).collect();
     let beyond = |outside: &dyn Fn(f64) -> bool| drawn.iter().filter(|value| outside(**value)).count();

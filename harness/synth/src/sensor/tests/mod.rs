@@ -14,7 +14,7 @@ use calibench_random::Key;
 
 use super::{Design, Electrons, Exposure, Noise, Sensor};
 
-pub(super) const KEY: Key<'_> = Key { seed: 20, scenario: "sensor", trial: 0, view: "a", target: "" };
+pub(super) const KEY: Key<'_> = Key { seed: 20, of: "sensor", trial: 0, view: "a", target: "" };
 /// Ten million pixels.
 pub(super) const SIZE: (usize, usize) = (4000, 2500);
 

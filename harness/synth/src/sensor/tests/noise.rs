@@ -54,7 +54,7 @@ fn no_two_images_share_their_noise() {
     let design = || electrons(Electrons { read: 3.0, ..Electrons::of_well(1e4) });
     let errors = |key| Errors::of(&expose(design(), flat((1000, 1000), 0.5), key).image, 0.5, 1e4);
     let first = errors(KEY);
-    for other in [Key { view: "b", ..KEY }, Key { trial: 1, ..KEY }, Key { seed: 21, ..KEY }, Key { scenario: "another", ..KEY }] {
+    for other in [Key { view: "b", ..KEY }, Key { trial: 1, ..KEY }, Key { seed: 21, ..KEY }, Key { of: "another", ..KEY }] {
         let product = first.product_with(&errors(other));
         assert!(product.abs() < 5.0 * 5009.0 / 1e3, "{product}");
     }

@@ -12,7 +12,7 @@ use super::*;
 use crate::stations::BoardViews;
 use crate::testfield::{Coded, SheetBend};
 
-const KEY: Key<'_> = Key { seed: 1988, scenario: "stand", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 1988, of: "stand", trial: 0, view: "", target: "" };
 const TURNS: [f64; 4] = [0.0, FRAC_PI_2, PI, 3.0 * FRAC_PI_2];
 
 fn field() -> Testfield {

@@ -5,7 +5,7 @@ use calibench_model::TargetKind;
 use super::super::sheet_layout;
 use super::*;
 
-const KEY: Key<'_> = Key { seed: 1988, scenario: "coded", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 1988, of: "coded", trial: 0, view: "", target: "" };
 
 fn all() -> Coded {
     Coded { measured: 8, ..Coded::paper() }

@@ -3,7 +3,7 @@ use calibench_model::TargetKind;
 use super::super::{Arrangement, Panels, Turn};
 use super::*;
 
-const KEY: Key<'_> = Key { seed: 8, scenario: "wall", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 8, of: "wall", trial: 0, view: "", target: "" };
 
 const SHAPES: [Shape; 6] = [
     Shape::Cross { bar: 0.3 },

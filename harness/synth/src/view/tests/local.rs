@@ -8,7 +8,7 @@ use super::*;
 use crate::local::{LocalDesign, LocalDistortion};
 use crate::view::TargetTruth;
 
-const KEY: Key<'_> = Key { seed: 5, scenario: "local", trial: 0, view: "", target: "" };
+const KEY: Key<'_> = Key { seed: 5, of: "local", trial: 0, view: "", target: "" };
 /// Some pixels large, and smooth over a few targets.
 const DESIGN: LocalDesign = LocalDesign { sigma: 1.2, correlation: 14.0 };
 

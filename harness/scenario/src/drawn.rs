@@ -1,0 +1,105 @@
+//! For what the random numbers of a scenario are drawn.
+
+use toml::de::DeTable;
+
+use crate::resolved::text_of;
+use crate::sweep::Sweep;
+
+const FIELD: &str = "testfield";
+/// Tables that say what is pictured beside it.
+const PICTURED: [&str; 8] = ["scene", "figure", "photographs", "camera", "stations", "station", "optics", "sensor"];
+const TRANSFER: &str = "transfer";
+/// Tables within `[transfer]` that say what is done with what is pictured.
+const APPLICATIONS: [&str; 3] = ["method", "case", "decomposition"];
+
+/// For what the random numbers of a scenario are drawn, as digests. With the seed they are all that draws depend on: not its name, words and methods, nor what is made of its
+/// points. Cells of a sweep draw the same.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawn {
+    /// The testfield by itself: the same thing in whatever scenario pictures it.
+    pub field: String,
+    /// All that is pictured.
+    pub all: String,
+}
+
+impl Drawn {
+    /// That of the table of a file; of a sweep, whatever values it has.
+    pub(crate) fn of(root: &DeTable<'_>, sweep: Option<&Sweep>) -> Self {
+        let unswept = sweep.map(|sweep| sweep.without_values(root));
+        let root = unswept.as_ref().unwrap_or(root);
+        let field = text_of(root, |key| key == FIELD);
+        let pictured = text_of(root, |key| PICTURED.contains(&key));
+        let transfer = root.get(TRANSFER).and_then(|transfer| transfer.get_ref().as_table());
+        let transfer = transfer.map_or_else(String::new, |table| text_of(table, |key| !APPLICATIONS.contains(&key)));
+        Self { all: digest(&[&field, &pictured, &transfer]), field: digest(&[&field]) }
+    }
+}
+
+fn digest(texts: &[&str]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for text in texts {
+        hasher.update(text.as_bytes()).update(&[0]);
+    }
+    hasher.finalize().to_hex()[..32].to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(text: &str) -> Drawn {
+        let mut root = DeTable::parse(text).unwrap().into_inner();
+        let sweep = root.contains_key("sweep").then(|| crate::sweep::read::take(&mut root, text, "f.toml", &mut Vec::new()).unwrap());
+        Drawn::of(&root, sweep.as_ref())
+    }
+
+    const TEXT: &str = "why = \"a\"\nseed = 7\ntrials = 3\n[camera]\nc = 5\n[testfield]\nkind = \"wall\"\n[[station]]\nname = \"x\"\n\
+        [optics]\nblur = 0.7\n[sensor]\ngrey_noise = 0.01\n[pointing]\nsigma = 0.7\n[[method]]\nname = \"pixel\"\n";
+
+    #[test]
+    fn words_methods_and_what_is_made_of_points_change_no_draw() {
+        let one = drawn(TEXT);
+        for (old, new) in [
+            ("\"a\"", "\"b\""),
+            ("seed = 7", "seed = 8 # as --seed"),
+            ("trials = 3", "trials = 4\nnightly = true\nbound_window = 21"),
+            ("[optics]\nblur = 0.7\n[sensor]\ngrey_noise = 0.01", "[sensor]\ngrey_noise = 1.0e-2 # small\n[optics]\nblur = 7e-1"),
+            ("sigma = 0.7", "detector = \"harris\""),
+            ("name = \"pixel\"", "name = \"lsm\"\n[[method]]\nname = \"pixel\"\n[calibration]\nsets = [\"c\"]"),
+        ] {
+            let other = TEXT.replacen(old, new, 1);
+            assert!(other != TEXT && drawn(&other) == one, "{old} {new}");
+        }
+    }
+
+    #[test]
+    fn what_is_pictured_changes_all_draws_and_the_field_those_within_it() {
+        let one = drawn(TEXT);
+        for (old, new, within) in [
+            ("c = 5", "c = 6", false),
+            ("\"x\"", "\"y\"", false),
+            ("blur = 0.7", "blur = 0.8", false),
+            ("grey_noise = 0.01", "grey_noise = 0.02", false),
+            ("kind = \"wall\"", "kind = \"board\"", true),
+        ] {
+            let other = drawn(&TEXT.replacen(old, new, 1));
+            assert!(other.all != one.all && (other.field != one.field) == within, "{old} {new}");
+        }
+        assert_ne!(drawn("[scene]\nname = \"a\"").all, drawn("[figure]\nname = \"a\"").all);
+    }
+
+    #[test]
+    fn cells_of_a_sweep_draw_the_same_whatever_else_is_swept() {
+        let swept = |values: &str| drawn(&format!("{TEXT}[sweep]\n\"optics.blur\" = {values}\n\"method.pixel.window\" = [3, 5]\n"));
+        assert_eq!(swept("[0.3, 0.7]"), swept("[0.2, 0.3, 0.7]"));
+        assert_ne!(swept("[0.3, 0.7]").all, drawn(TEXT).all);
+    }
+
+    #[test]
+    fn a_transfer_draws_the_same_for_whatever_method() {
+        let with = |more: &str| drawn(&format!("[transfer]\nsigma_px = 0.1\n{more}"));
+        assert_eq!(with(""), with("[[transfer.method]]\nname = \"a\"\n[[transfer.case]]\nname = \"b\"\n[[transfer.decomposition]]\nname = \"c\"\n"));
+        assert_ne!(with("").all, with("survey_sigma = 1\n").all);
+        assert_ne!(with("").all, with("[transfer.board]\nsquare = 1\n").all);
+    }
+}
