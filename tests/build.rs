@@ -1,5 +1,5 @@
-//! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, packages of other
-//! tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`, Chromium with what drives it as `cfg(browser)`.
+//! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, `cfg(wide_photographs)`,
+//! packages of other tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`, Chromium with what drives it as `cfg(browser)`.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ const PEERS: [(&str, &str); 6] = [
 const SYSTEM: &str = "/usr/lib/python3/dist-packages";
 
 fn main() {
-    test_data::announce(&[("photographs", "opencv-left"), ("camera_files", "cameras"), ("webcam", "webcam")]);
+    test_data::announce(&[("photographs", "opencv-left"), ("camera_files", "cameras"), ("webcam", "webcam"), ("wide_photographs", "reports/01-gopro-wide")]);
     println!("cargo::rustc-check-cfg=cfg(python)");
     if Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
         println!("cargo::rustc-cfg=python");

@@ -83,3 +83,67 @@ fn a_photograph_without_a_board_is_said_to_have_none() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("noise.png: no board of 9 x 6 inner corners found"), "{}", stderr(&output));
 }
+
+/// Paper, walls and clothes of photographs in which no edges cross: columns and rows of first and last pixels, as a person saw them.
+const NO_CORNERS: [(&str, &[[u32; 4]]); 3] = [
+    (
+        "reports/01-gopro-wide/GOPR0034.jpg",
+        &[
+            [15, 250, 80, 700],
+            [15, 15, 100, 60],
+            [605, 30, 705, 100],
+            [605, 140, 705, 225],
+            [600, 260, 710, 370],
+            [600, 400, 710, 515],
+            [600, 550, 715, 660],
+            [610, 690, 710, 780],
+            [610, 815, 705, 880],
+            [465, 285, 570, 370],
+            [470, 550, 570, 650],
+            [745, 265, 850, 365],
+            [745, 400, 860, 510],
+        ],
+    ),
+    (
+        "reports/01-gopro-wide/GOPR0052.jpg",
+        &[
+            [10, 200, 45, 600],
+            [10, 10, 130, 80],
+            [530, 40, 680, 160],
+            [705, 190, 875, 350],
+            [540, 380, 675, 510],
+            [905, 400, 1035, 530],
+            [1090, 240, 1260, 370],
+            [710, 380, 865, 525],
+            [540, 560, 670, 660],
+            [1060, 605, 1230, 690],
+        ],
+    ),
+    ("opencv-left/left01.jpg", &[[20, 80, 140, 130], [165, 60, 200, 190]]),
+];
+
+#[test]
+#[cfg_attr(not(wide_photographs), ignore = "the photographs reports/01-gopro-wide are absent")]
+fn where_a_person_saw_no_corner_next_to_none_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut tried, mut accepted) = (0, 0);
+    for (photo, places) in NO_CORNERS {
+        let photo = data().join(photo);
+        let name = photo.file_name().unwrap().to_str().unwrap();
+        let mut starts = String::from("image,target,x,y\n");
+        // The search and the window, whichever way the corner is followed, stay within.
+        let within = |from: u32, to: u32| (from + 14..=to - 14).step_by(3);
+        let all = places.iter().flat_map(|&[left, top, right, bottom]| within(top, bottom).flat_map(move |y| within(left, right).map(move |x| (x, y))));
+        for (index, (x, y)) in all.enumerate() {
+            starts.push_str(&format!("{name},t{index},{x},{y}\n"));
+            tried += 1;
+        }
+        std::fs::write(folder.path().join("starts.csv"), starts).unwrap();
+        let output = run(folder.path(), &["measure", photo.to_str().unwrap(), "--points", "starts.csv", "-m", "parametric_corner", "-q"]);
+        let measured: Vec<String> = stdout(&output).lines().filter(|line| line.contains(",measured,")).map(str::to_owned).collect();
+        accepted += measured.len();
+        println!("{name}: {} measured: {measured:#?}", measured.len());
+    }
+    println!("{accepted} of {tried} places");
+    assert!(tried > 10_000 && accepted * 1000 <= tried, "{accepted} of {tried}");
+}

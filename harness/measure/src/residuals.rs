@@ -68,6 +68,7 @@ impl Structure {
         self.significance() < WHITE
     }
 
+    pub(crate) fn told(&self) -> (f64, f64) { (self.covariance(), self.covariance() / (self.square / self.count)) }
     /// The covariance of neighbours, in units of half the contrast squared.
     fn covariance(&self) -> f64 {
         self.product / self.pairs

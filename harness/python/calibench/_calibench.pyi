@@ -268,6 +268,9 @@ class Calibration:
     def doubts(self) -> List[str]:
         """What is doubtful, in words; with any the command line ends with exit code 3."""
     @property
+    def suspected(self) -> List[Dict[str, Any]]:
+        """What the input may be in truth where the result is in doubt, first what explains it best: `kind`, `what` and `rms_px`, or None there."""
+    @property
     def warnings(self) -> List[str]:
         """What is to be known and is no doubt: what the summary calls warnings."""
     @property
@@ -388,12 +391,13 @@ def calibrate(
     huber: Optional[float] = None,
     snoop: bool = False,
     compare: Optional[Sequence[Sequence[str]]] = None,
+    limit: Optional[float] = None,
 ) -> Calibration:
     """Calibrate a camera: as `calibench calibrate --points --control` does.
 
     `xy` has one array for each image, with a row for each point of the board, NaN where it was not measured; what `measure`
     returned does as well, and its covariances are weights with `covariances=True`. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
-    `board_shape`, `sigma` (px), `huber`, `snoop` and `compare` are as on the command line.
+    `board_shape`, `sigma` (px), `huber`, `snoop`, `compare` and `limit` (px) are as on the command line.
     """
 
 def diff(

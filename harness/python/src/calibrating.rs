@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use calibench_adjust::Use;
-use calibench_calibrate::{BoardShape, Calibration as Solved, Optics, Settings, calibrate as solve, prepare};
+use calibench_calibrate::{
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve, prepare, suspected,
+};
 use calibench_exchange::NamedCamera;
 use calibench_judge::BENT;
 use calibench_model::Pose as Exterior;
@@ -44,8 +46,12 @@ struct Done {
     sigma0: Option<f64>,
     rms_px: f64,
     doubts: Vec<String>,
+    /// Word, what it may be, px RMS then.
+    suspected: Vec<Suspect>,
     summary: String,
 }
+
+type Suspect = (String, String, Option<f64>);
 
 #[pymethods]
 impl Calibration {
@@ -114,6 +120,19 @@ impl Calibration {
         self.done.doubts.clone()
     }
 
+    /// What the input may be in truth where the result is in doubt, first what explains it best: dicts of `kind`, `what` and `rms_px`, or None there.
+    #[getter]
+    fn suspected<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let one = |(kind, what, rms_px): &Suspect| {
+            let found = PyDict::new(py);
+            found.set_item("kind", kind)?;
+            found.set_item("what", what)?;
+            found.set_item("rms_px", rms_px)?;
+            Ok(found)
+        };
+        self.done.suspected.iter().map(one).collect()
+    }
+
     /// What is to be known and is no doubt: what the summary calls warnings.
     #[getter]
     fn warnings(&self) -> Vec<String> {
@@ -144,7 +163,7 @@ impl Calibration {
 /// Calibrates a camera from measured points: as `calibench calibrate --points --control` does.
 #[pyfunction]
 #[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, start = None, datum = "control",
-    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = None))]
+    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = None, limit = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn calibrate(
     py: Python<'_>,
@@ -164,6 +183,7 @@ pub fn calibrate(
     huber: Option<f64>,
     snoop: bool,
     compare: Option<Vec<Vec<String>>>,
+    limit: Option<f64>,
 ) -> PyResult<Calibration> {
     let board = Board::of(board)?;
     let names = image_names(images, xy.len())?;
@@ -183,19 +203,33 @@ pub fn calibrate(
         huber: positive(huber, "huber")?,
         snoop,
         sigma_px: positive(sigma, "sigma")?,
+        limit_px: positive(limit, "limit")?,
         covariances,
         ..Settings::new(vec![optics])
     };
     if snoop && huber.is_some() {
         return Err(input("huber and snoop: one or the other"));
     }
+    let given = (points.len() <= MOST_TRIED).then(|| points.clone());
+    let suspects = |found: Result<&Solved<'_>, &Unsolved>| {
+        given.as_ref().map_or_else(Vec::new, |points| suspected(points, &board.control, &settings, found))
+    };
     let done = interruptible(py, || {
-        let prepared = prepare(points, &board.control, &settings)?;
-        self::solve(&prepared, &compare.unwrap_or_default(), |calibration| done(calibration, &names, &board))
+        let explained = |error: Unsolved| {
+            let lines: String = suspects(Err(&error)).iter().map(|found| format!("\nsuspected: {}", found.words())).collect();
+            format!("{error}{lines}")
+        };
+        let prepared = prepare(points, &board.control, &settings).map_err(explained)?;
+        let solved = self::solve(&prepared, &compare.unwrap_or_default(), |calibration| {
+            let suspects = if calibration.doubts().is_empty() { Vec::new() } else { suspects(Ok(calibration)) };
+            done(calibration, suspects, &names, &board)
+        });
+        solved.map_err(explained)
     })?;
-    let (named, done) = done.map_err(|error| CalibrationError::new_err(in_python(&error.to_string())))?.map_err(input)?;
-    for text in &done.doubts {
-        doubt(py, text)?;
+    let (named, done) = done.map_err(|error| CalibrationError::new_err(in_python(&error)))?.map_err(input)?;
+    let suspicions = done.suspected.iter().map(|(_, what, _)| format!("suspected: {what}"));
+    for text in done.doubts.iter().cloned().chain(suspicions) {
+        doubt(py, &text)?;
     }
     Ok(Calibration { camera: Py::new(py, Camera::new(named))?, done })
 }
@@ -219,7 +253,7 @@ pub fn positive(value: Option<f64>, what: &str) -> PyResult<Option<f64>> {
     }
 }
 
-fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<(NamedCamera, Done), String> {
+fn done(calibration: &Solved<'_>, suspects: Vec<Suspected>, names: &[String], board: &Board) -> Result<(NamedCamera, Done), String> {
     let (prepared, solution) = (calibration.prepared, &calibration.solution);
     let image_of: HashMap<&str, usize> = names.iter().enumerate().map(|(index, name)| (name.as_str(), index)).collect();
     let point_of: HashMap<&str, usize> = board.names().enumerate().map(|(index, name)| (name, index)).collect();
@@ -243,6 +277,7 @@ fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<(Na
         sigma0: solution.sigma0(),
         rms_px: calibration.rms_px(),
         doubts: calibration.doubts().into_iter().map(in_python).collect(),
+        suspected: suspects.into_iter().map(|found| (found.kind.to_owned(), in_python(&found.what), found.rms_px)).collect(),
         summary: summary(calibration),
     };
     Ok((calibration.named_camera(0)?, done))
@@ -260,6 +295,7 @@ type State<'py> = (
     Option<f64>,
     f64,
     Vec<String>,
+    Vec<Suspect>,
     String,
 );
 
@@ -267,18 +303,18 @@ impl Pickled for Calibration {
     const CLASS: &'static str = "Calibration";
 
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, summary, .. } = &self.done;
+        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, suspected, summary, .. } = &self.done;
         let poses = poses.iter().map(|pose| Py::new(py, Pose(*pose))).collect::<PyResult<Vec<_>>>()?;
         let (covariance, residuals) = (of_matrix(py, covariance)?, self.residuals(py)?);
-        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, doubts, summary).into_bound_py_any(py)
+        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, doubts, suspected, summary).into_bound_py_any(py)
     }
 
     fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, summary): State<'_> = state.extract()?;
+        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, summary): State<'_> = state.extract()?;
         let covariance = matrix(&covariance)?;
         let residuals = residuals.iter().map(|image| rows(image, "residuals")).collect::<PyResult<_>>()?;
         let poses = poses.iter().map(|pose| pose.get().0).collect();
-        let done = Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, summary };
+        let done = Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, summary };
         Ok(Self { done, camera })
     }
 }

@@ -1,6 +1,8 @@
 """Calibration and verdicts."""
 
+import json
 import os
+import pickle
 import subprocess
 import sys
 import warnings
@@ -155,6 +157,26 @@ def test_what_cannot_be_is_a_doubt(shots, measured):
         cb.calibrate(measured, "9x6:25", size=(64, 48))
     # In words of Python.
     assert "--" not in "".join(calibrated(measured, "9x6:25", size=(64, 48)).doubts)
+
+
+def test_what_the_input_may_be_is_named(shots, measured, control, program, tmp_path):
+    """Columns and rows exchanged, and no suspicion where all is well; as the command line answers."""
+    size = shots[0].image.shape[::-1]
+    assert calibrated(measured, control, size=size, model="opencv5").suspected == []
+    turned = dict(cb.board("6x9:25"))
+    found = calibrated(measured, turned, size=size, model="opencv5", images=[shot.name for shot in shots])
+    write_files(tmp_path, shots, measured, turned)
+    words = ["--points", "points.csv", "--control", "control.csv", "--size", f"{size[0]}x{size[1]}", "--model", "opencv5", "--json"]
+    answer = json.loads(program("calibrate", *words, code=3))
+    assert found.suspected == answer["suspected"] and found.suspected[0]["kind"] == "raster"
+    assert pickle.loads(pickle.dumps(found)).suspected == found.suspected
+    with pytest.warns(cb.DoubtWarning, match="suspected: columns and rows of the board are exchanged"):
+        cb.calibrate(measured, turned, size=size, model="opencv5")
+
+
+def test_a_limit_of_ones_own_decides_what_is_hardly_known(shots, measured, control):
+    size = shots[0].image.shape[::-1]
+    assert any("known" in doubt for doubt in calibrated(measured, control, size=size, model="opencv5", limit=1e-6).doubts)
 
 
 def test_points_and_sizes_are_taken_as_opencv_has_them(shots, measured):

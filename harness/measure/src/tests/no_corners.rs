@@ -2,13 +2,46 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rand::RngExt;
+use calibench_model::{PixelPoint, Start};
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::bound::noisy;
+use super::quadrature_images;
+use crate::operator::Operator;
 
 /// Their width and height, px.
 pub(crate) const WIDTH: usize = 41;
+
+/// Of `windows` of bare edges, of noise and of textures that are 0.7 to 3 px soft, how many an operator accepts, from up to 2 px off the middle.
+pub(crate) fn accepted(operator: &dyn Operator, windows: usize) -> Vec<(String, usize)> {
+    let count = |grey: &dyn Fn(&mut ChaCha8Rng) -> Vec<f64>| {
+        eprintln!("KIND");
+        let mut rng = ChaCha8Rng::seed_from_u64(71);
+        let is_accepted = |rng: &mut ChaCha8Rng| {
+            let image = quadrature_images::image(&grey(rng), WIDTH);
+            operator.measure(&image, &near_middle(rng)).is_ok()
+        };
+        (0..windows).filter(|_| is_accepted(&mut rng)).count()
+    };
+    let mut counts = vec![("edges".to_owned(), count(&edge))];
+    counts.push(("noise".to_owned(), count(&|rng| noisy(&[0.5; WIDTH * WIDTH], 0.02, rng))));
+    for sigma in [0.7, 1.0, 1.5, 2.0, 3.0] {
+        let grey = |rng: &mut ChaCha8Rng| noisy(&texture(sigma, rng).iter().map(|grey| 0.5 + 0.1 * grey).collect::<Vec<_>>(), 0.003, rng);
+        counts.push((format!("texture of {sigma} px"), count(&grey)));
+    }
+    println!("of {windows} accepted: {counts:?}");
+    counts
+}
+
+fn near_middle(rng: &mut ChaCha8Rng) -> Start {
+    loop {
+        let (x, y) = (rng.random_range(-2.0..2.0), rng.random_range(-2.0..2.0_f64));
+        if f64::hypot(x, y) <= 2.0 {
+            return Start::at(PixelPoint::new(20.0 + x, 20.0 + y));
+        }
+    }
+}
 
 /// Noise under a Gaussian of this standard deviation, px, of unit variance.
 pub(crate) fn texture(sigma: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {

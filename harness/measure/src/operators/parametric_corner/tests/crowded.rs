@@ -102,18 +102,3 @@ fn a_bar_beside_the_corner_does_not_pass_silently() {
     println!("{kept} of 200 are measured, {far} of them wrong without a word");
     assert!(far <= 4, "{far} of {kept}");
 }
-
-#[test]
-fn noise_and_edges_are_no_corners() {
-    let mut noise = Noise(5);
-    let (mut of_noise, mut of_edges) = (0, 0);
-    for k in 0..1000 {
-        let flat = noise.on(&Image::from_fn(41, 41, |_, _| 0.5), 0.03);
-        of_noise += i32::from(measured(&flat, [20.0, 20.0]).is_ok());
-        let (turn, from) = (0.37 * f64::from(k), 0.01 * f64::from(k % 300) - 1.5);
-        let bare = Image::from_fn(41, 41, |x, y| (0.5 + 0.3 * edge(turned(x, y, [20.0, 20.0], turn)[0] - from)) as f32);
-        of_edges += i32::from(measured(&noise.on(&bare, 0.01), [20.0, 20.0]).is_ok());
-    }
-    println!("accepted of 1000: {of_noise} of noise, {of_edges} edges");
-    assert!(of_noise <= 10 && of_edges <= 2, "{of_noise} of noise, {of_edges} edges");
-}

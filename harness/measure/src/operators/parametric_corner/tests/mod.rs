@@ -1,6 +1,7 @@
 mod crowded;
 mod efficiency;
 mod gradients;
+mod refused;
 
 use super::model::{Fidelity, Model, Shape};
 use super::*;

@@ -6,32 +6,13 @@ use rand_chacha::ChaCha8Rng;
 use super::efficiency::near;
 use super::*;
 use crate::tests::bound::noisy;
-use crate::tests::no_corners::{WIDTH, edge, texture};
+use crate::tests::no_corners::{WIDTH, accepted, texture};
 
 /// Of 10,000 the upper 95 % limit of Clopper and Pearson is then 0.93 %.
 const MOST_ACCEPTED: f64 = 0.0075;
 
-fn accepted(spec: &str, windows: usize, mut grey: impl FnMut(&mut ChaCha8Rng) -> Vec<f64>) -> usize {
-    let operator = operator(spec);
-    let mut rng = ChaCha8Rng::seed_from_u64(71);
-    let mut measured = |rng: &mut ChaCha8Rng| {
-        let image = quadrature_images::image(&grey(rng), WIDTH);
-        operator.measure(&image, &near([20.0, 20.0], 2.0, rng)).is_ok()
-    };
-    (0..windows).filter(|_| measured(&mut rng)).count()
-}
-
 fn refuses(spec: &str, windows: usize) {
-    let mut counts = vec![("edges".to_owned(), accepted(spec, windows, edge))];
-    counts.push(("noise".to_owned(), accepted(spec, windows, |rng| noisy(&[0.5; WIDTH * WIDTH], 0.02, rng))));
-    for sigma in [0.7, 1.0, 1.5, 2.0, 3.0] {
-        let grey = |rng: &mut ChaCha8Rng| {
-            let grey = texture(sigma, rng).iter().map(|grey| 0.5 + 0.1 * grey).collect::<Vec<_>>();
-            noisy(&grey, 0.003, rng)
-        };
-        counts.push((format!("texture of {sigma} px"), accepted(spec, windows, grey)));
-    }
-    println!("{spec}: of {windows} accepted: {counts:?}");
+    let counts = accepted(&*operator(spec), windows);
     // Of three or four arms so soft a texture is none in a window of 15 px.
     let held = if spec.ends_with('3') || spec.ends_with('4') { counts.len() - 1 } else { counts.len() };
     for (what, count) in &counts[..held] {

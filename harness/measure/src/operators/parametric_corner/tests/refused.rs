@@ -1,0 +1,24 @@
+//! What is no crossing: bare edges, noise and texture.
+
+use super::operator;
+use crate::tests::no_corners::accepted;
+
+/// Of all windows of a kind at most one in a thousand.
+fn refuses(spec: &str, windows: usize) {
+    for (what, count) in accepted(&*operator(spec), windows) {
+        assert!(count * 1000 <= windows, "{spec}, {what}: {count} of {windows}");
+    }
+}
+
+#[test]
+fn edges_noise_and_texture_are_no_corners() {
+    refuses("window=15", 3000);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn of_a_hundred_thousand_windows_next_to_none_is_taken_for_a_corner() {
+    for spec in ["window=15", "window=11", "window=15,gradient=1", "window=15,gradient=3", "window=15,curvature=1"] {
+        refuses(spec, 100_000);
+    }
+}
