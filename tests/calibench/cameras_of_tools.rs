@@ -1,7 +1,7 @@
 //! Cameras from tool to tool, as a user converts them.
 
 use crate::cameras::{CAMERA, folder, good};
-use crate::project::{root, run, stderr};
+use crate::project::{root, run, stderr, stdout};
 
 /// Two cameras of a rig, 11 cm apart.
 const RIG: &str = "cam0:\n  camera_model: ds\n  intrinsics: [-0.24, 0.57, 350.0, 349.0, 366.0, 249.0]\n  distortion_model: none\n  distortion_coeffs: []\n  \
@@ -165,4 +165,23 @@ fn keys_of_a_lens_are_mistakes_and_can_be_left_out() {
     assert_eq!(run(folder.path(), &["camera", "b.yml"]).status.code(), Some(2));
     let card = good(folder.path(), &["camera", "b.yml", "--ignore-key", "wobble_of_lens"]);
     assert!(card.contains("`wobble_of_lens` was left out"), "{card}");
+}
+
+/// The camera matrix of images binned 4 x 4 beside the size of the whole sensor: all is written, and the exit code says that it is in doubt.
+#[test]
+fn a_camera_that_no_lens_has_ends_with_3_and_everything_written() {
+    let folder = folder();
+    let here = folder.path();
+    std::fs::write(here.join("sensor.yml"), CAMERA.replace("1600", "6400").replace("1200", "4800")).unwrap();
+    let codes = |file: &str, output: &str| {
+        let answers = [vec!["camera", file], vec!["camera", file, "--json"], vec!["convert", file, "--to", "kalibr", "-o", output]];
+        answers.map(|arguments| {
+            let output = run(here, &arguments);
+            assert!(!stdout(&output).is_empty() || arguments[0] == "convert", "{arguments:?}");
+            (output.status.code(), stderr(&output).contains("reduced or binned 4 x 4 times"))
+        })
+    };
+    assert_eq!(codes("sensor.yml", "sensor.yaml"), [(Some(3), true); 3]);
+    assert!(here.join("sensor.yaml").is_file());
+    assert_eq!(codes("camera.yml", "camera.yaml"), [(Some(0), false); 3]);
 }

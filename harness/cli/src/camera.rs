@@ -9,7 +9,7 @@ use calibench_report::camera_card;
 use calibench_report::json::CameraFileAnswer;
 use clap::Args;
 
-use super::reading::Reading;
+use super::reading::{Reading, is_doubtful};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
@@ -29,8 +29,10 @@ impl CameraCommand {
         let (file, count) = opened.file(if self.answered.json { usize::MAX } else { MOST_LISTED })?;
         let format = file.format;
         let camera = self.reading.one_of(&self.file, opened)?;
+        let doubt = || if is_doubtful(&camera.camera) { Err(Failure::Doubt) } else { Ok(()) };
         if self.answered.json {
-            return answer(&CameraFileAnswer::new(&self.file.display().to_string(), &file, &camera));
+            answer(&CameraFileAnswer::new(&self.file.display().to_string(), &file, &camera))?;
+            return doubt();
         }
         let verified = format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}"));
         let cameras = if count == 1 { "1 camera".to_owned() } else { format!("{count} cameras") };
@@ -43,7 +45,8 @@ impl CameraCommand {
         );
         text.push_str(&index(&file.cameras, count));
         text.push_str(&camera_card(&camera));
-        print(&text)
+        print(&text)?;
+        doubt()
     }
 }
 

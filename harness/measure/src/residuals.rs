@@ -21,6 +21,9 @@ const SIGNIFICANT: f64 = 5.0;
 /// White noise has fewer, but for one window in a thousand.
 const WHITE: f64 = 3.0;
 
+/// A correlation of neighbours beyond it is taken as this.
+const STRONGEST: f64 = 0.9;
+
 /// Change of the coverage with the place of what is pictured, 1/px, from which on a pixel tells anything of that: a tenth of what a sharp edge has.
 const SHOWS: f32 = 0.05;
 
@@ -68,7 +71,13 @@ impl Structure {
         self.significance() < WHITE
     }
 
-    pub(crate) fn told(&self) -> (f64, f64) { (self.covariance(), self.covariance() / (self.square / self.count)) }
+    /// How much larger than for white noise the variance of what is estimated from many of them is, as their neighbours' correlation says: between what it is for residuals that
+    /// are alike along one axis and along both.
+    pub(crate) fn spread(&self) -> f64 {
+        let correlation = (self.covariance() / (self.square / self.count)).clamp(0.0, STRONGEST);
+        ((1.0 + correlation) / (1.0 - correlation)).powf(1.5)
+    }
+
     /// The covariance of neighbours, in units of half the contrast squared.
     fn covariance(&self) -> f64 {
         self.product / self.pairs

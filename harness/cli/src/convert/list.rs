@@ -19,6 +19,8 @@ const AT_A_TIME: usize = 4096;
 struct Words {
     cameras: Said,
     lost: Said,
+    /// Whether no lens has one of the cameras.
+    doubtful: bool,
 }
 
 impl Convert {
@@ -45,7 +47,7 @@ impl Convert {
         words.cameras.say();
         self.reading.warn_of_format(format);
         words.lost.say();
-        Ok(true)
+        if words.doubtful { Err(Failure::Doubt) } else { Ok(true) }
     }
 
     /// Writes the converted list; `place` stands before what is wrong with its file.
@@ -69,7 +71,8 @@ impl Convert {
             let found: Vec<Result<Answer, Failure>> = numbered.map(one).collect();
             let mut cameras = Vec::with_capacity(found.len());
             for answer in found {
-                let Answer { camera, said, .. } = answer?;
+                let Answer { camera, said, doubtful, .. } = answer?;
+                words.doubtful |= doubtful;
                 said.iter().for_each(|(label, text)| words.cameras.add(label.as_deref(), text));
                 lost(format, &camera).for_each(|text| words.lost.add(None, &text));
                 cameras.push(camera);

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 use super::context::Context;
 use super::output;
-use super::reading::Reading;
+use super::reading::{Reading, is_doubtful};
 use crate::deliver::{As, answer, stream};
 use crate::failure::Failure;
 use said::Said;
@@ -105,6 +105,7 @@ impl Convert {
         let mut said = Said::default();
         results.iter().flat_map(|answer| &answer.said).for_each(|(label, text)| said.add(label.as_deref(), text));
         said.say();
+        let doubtful = results.iter().any(|answer| answer.doubtful);
         let Some(&Answer { format, .. }) = results.first() else { return Err(Failure::input("the file holds no camera")) };
         let (mut cameras, found): (Vec<NamedCamera>, Vec<Found>) = results.into_iter().map(|answer| (answer.camera, answer.found)).unzip();
         self.reading.open_points().written(format, &mut cameras);
@@ -112,12 +113,16 @@ impl Convert {
         let mut words = Said::default();
         cameras.iter().flat_map(|camera| lost(format, camera)).for_each(|text| words.add(None, &text));
         words.say();
-        if !self.answered.json {
-            return cameras_file.write(format, &cameras);
-        }
-        if self.output.is_some() {
+        if !self.answered.json || self.output.is_some() {
             cameras_file.write(format, &cameras)?;
         }
+        if self.answered.json {
+            self.answer(format, &cameras, found)?;
+        }
+        if doubtful { Err(Failure::Doubt) } else { Ok(()) }
+    }
+
+    fn answer(&self, format: &CameraFormat, cameras: &[NamedCamera], found: Vec<Found>) -> Result<(), Failure> {
         answer(&ConversionAnswer {
             file: self.file.display().to_string(),
             to: format.name.to_owned(),
@@ -146,6 +151,7 @@ impl Convert {
 
     /// A camera in the new convention, and the format of its file.
     fn converted(&self, source: &NamedCamera, label: Option<&str>, plot: Option<&OutputFile>, quiet: bool) -> Result<Answer, Failure> {
+        let doubtful = is_doubtful(&source.camera);
         let order = self.reading.open_points().order();
         let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order, output: self.output.as_deref() };
         let goal = goal(&self.to, &given).map_err(no_target)?;
@@ -153,7 +159,7 @@ impl Convert {
             let pitch_um = self.pitch.or(source.pitch_um);
             let (camera, found) = self.naive(source, pitch_um, plot, quiet)?;
             let camera = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), camera) };
-            return Ok(Answer { camera, format: goal.format, said: Vec::new(), found });
+            return Ok(Answer { camera, format: goal.format, said: Vec::new(), doubtful, found });
         }
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
@@ -177,7 +183,7 @@ impl Convert {
         }
         let model = model.map(str::to_owned);
         let found = Found::Converted(Box::new(Conversion { residuals: Vec::new(), ..conversion }), model);
-        Ok(Answer { camera, format: goal.format, said, found })
+        Ok(Answer { camera, format: goal.format, said, doubtful, found })
     }
 
     /// Why a camera is not converted, with its name where there are several.
@@ -228,6 +234,8 @@ struct Answer {
     format: &'static CameraFormat,
     /// What the user is told, of this camera by its label or of all.
     said: Vec<(Option<String>, String)>,
+    /// Whether no lens has the camera that was read.
+    doubtful: bool,
     found: Found,
 }
 

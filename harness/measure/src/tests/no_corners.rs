@@ -16,7 +16,6 @@ pub(crate) const WIDTH: usize = 41;
 /// Of `windows` of bare edges, of noise and of textures that are 0.7 to 3 px soft, how many an operator accepts, from up to 2 px off the middle.
 pub(crate) fn accepted(operator: &dyn Operator, windows: usize) -> Vec<(String, usize)> {
     let count = |grey: &dyn Fn(&mut ChaCha8Rng) -> Vec<f64>| {
-        eprintln!("KIND");
         let mut rng = ChaCha8Rng::seed_from_u64(71);
         let is_accepted = |rng: &mut ChaCha8Rng| {
             let image = quadrature_images::image(&grey(rng), WIDTH);
