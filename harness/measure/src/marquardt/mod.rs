@@ -161,6 +161,18 @@ impl<const P: usize> Normal<P> {
         self.cofactors().is_some_and(|[[xx, _], [_, yy]]| step[0].powi(2) + step[1].powi(2) <= square * (xx + yy))
     }
 
+    /// The cofactor of one unknown, of `N^-1`, where others are held; `None` when those that are free are not determined.
+    pub(crate) fn cofactor(&self, unknown: usize, held: impl Fn(usize) -> bool) -> Option<f64> {
+        let mut n = self.n;
+        for i in (0..P).filter(|i| held(*i)) {
+            n.row_mut(i).fill(0.0);
+            n.column_mut(i).fill(0.0);
+            n[(i, i)] = 1.0;
+        }
+        let unit = SVector::from_fn(|i, _| if i == unknown { 1.0 } else { 0.0 });
+        Some(decompose(&n)?.solve(&unit)[unknown])
+    }
+
     /// The cofactors of the first `M` unknowns, of `N^-1`; `None` when the unknowns are not determined.
     pub(crate) fn cofactors<const M: usize>(&self) -> Option<[[f64; M]; M]> {
         let Scaled { factor, scale } = decompose(&self.n)?;
@@ -208,6 +220,16 @@ mod tests {
         fn redundancy(&self) -> f64 {
             18.0
         }
+    }
+
+    #[test]
+    fn a_cofactor_with_others_held_is_that_of_the_matrix_without_them() {
+        let n = SMatrix::<f64, 3, 3>::new(4.0, 30.0, -2e-3, 30.0, 900.0, 1e-2, -2e-3, 1e-2, 7e-6);
+        let normal = Normal { n, b: SVector::zeros(), omega: 5.0 };
+        let free = SMatrix::<f64, 2, 2>::new(900.0, 1e-2, 1e-2, 7e-6).try_inverse().unwrap()[(1, 1)];
+        assert!((normal.cofactor(2, |unknown| unknown == 0).unwrap() / free - 1.0).abs() < 1e-12);
+        let all = n.try_inverse().unwrap()[(2, 2)];
+        assert!((normal.cofactor(2, |_| false).unwrap() / all - 1.0).abs() < 1e-9 && free < all);
     }
 
     #[test]

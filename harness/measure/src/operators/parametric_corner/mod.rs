@@ -13,7 +13,7 @@ mod sums;
 mod window;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use crate::following::{Fitted, Rest, follow, in_smaller_windows};
 use crate::gradient::{ADDED, EACH, EVEN, LIGHT, estimated};
@@ -22,11 +22,11 @@ use crate::operator::{Operator, finite_around, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
 
+use model::BASE;
 use window::{Setting, Window};
 
-/// The places of the mean grey value and of half the contrast among the unknowns.
-const MEAN: usize = 5;
-const HALF: usize = 6;
+/// The place of half the contrast among the unknowns, the last of the [`BASE`].
+const HALF: usize = BASE - 1;
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
 /// Sides of the smaller windows, px, that are tried where the residuals of the wanted one are no noise: a neighbour may stand in it.
@@ -173,18 +173,15 @@ impl ParametricCorner {
             return Err(Rejection::NoCorner);
         }
         let redundancy = (side * side - P) as f64;
-        if x[HALF].powi(2) < SEEN * SEEN * normal.omega / redundancy * cofactor_of_half(&normal.n) * structure.spread() {
+        let is_geometry = |unknown: usize| unknown < BASE - 2 || CURVED && unknown >= P - 2;
+        let cofactor = normal.cofactor(HALF, is_geometry).ok_or(Rejection::ErrorEllipse)?;
+        if x[HALF].powi(2) < SEEN * SEEN * normal.omega / redundancy * cofactor * structure.spread() {
             return Err(Rejection::NoCorner);
         }
         let covariance = covariance(&normal, redundancy).ok_or(Rejection::ErrorEllipse)?;
         let found = Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) };
         Ok(Fitted { found, doubtful: structure.is_no_noise(DOUBT) })
     }
-}
-
-/// The cofactor of half the contrast where all unknowns but the two grey values are held.
-fn cofactor_of_half<const P: usize>(n: &SMatrix<f64, P, P>) -> f64 {
-    n[(MEAN, MEAN)] / (n[(MEAN, MEAN)] * n[(HALF, HALF)] - n[(MEAN, HALF)].powi(2))
 }
 
 impl Operator for ParametricCorner {
