@@ -59,6 +59,9 @@ def free(driver):
 
 @pytest.fixture
 def served(driver):
+    # Points of the test before are on the disk, and in the page until it is left.
+    driver.get("about:blank")
+    (Path(ABOUT["folder"]) / "pointed.csv").unlink(missing_ok=True)
     page = opened(driver, ABOUT["url"], "served")
     yield page
     quiet(page)
