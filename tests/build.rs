@@ -21,7 +21,12 @@ const PEERS: [(&str, &str); 6] = [
 const SYSTEM: &str = "/usr/lib/python3/dist-packages";
 
 fn main() {
-    test_data::announce(&[("photographs", "opencv-left"), ("camera_files", "cameras"), ("webcam", "webcam"), ("wide_photographs", "reports/01-gopro-wide")]);
+    test_data::announce(&[
+        ("photographs", "opencv-left"),
+        ("camera_files", "cameras"),
+        ("webcam", "webcam"),
+        ("wide_photographs", "reports/01-gopro-wide"),
+    ]);
     println!("cargo::rustc-check-cfg=cfg(python)");
     if Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
         println!("cargo::rustc-cfg=python");

@@ -133,7 +133,9 @@ fn where_a_person_saw_no_corner_next_to_none_is_measured() {
         let mut starts = String::from("image,target,x,y\n");
         // The search and the window, whichever way the corner is followed, stay within.
         let within = |from: u32, to: u32| (from + 14..=to - 14).step_by(3);
-        let all = places.iter().flat_map(|&[left, top, right, bottom]| within(top, bottom).flat_map(move |y| within(left, right).map(move |x| (x, y))));
+        let all = places
+            .iter()
+            .flat_map(|&[left, top, right, bottom]| within(top, bottom).flat_map(move |y| within(left, right).map(move |x| (x, y))));
         for (index, (x, y)) in all.enumerate() {
             starts.push_str(&format!("{name},t{index},{x},{y}\n"));
             tried += 1;

@@ -79,7 +79,9 @@ impl Render {
         output.replace::<RunError>(|folder| {
             match &scenario.subject {
                 Subject::Views(subject) => self.views(context, &scenario, subject, trials.map(key), folder, &mut lists)?,
-                Subject::Scene(subject) => trials.map(key).try_for_each(|key| self.scene(&scenario.name, subject, key, folder, &mut lists))?,
+                Subject::Scene(subject) => {
+                    trials.map(key).try_for_each(|key| self.scene(&scenario.name, subject, key, folder, &mut lists))?;
+                }
                 Subject::Photographs(_) | Subject::Printed(_) => return Err(RunError::NothingToRender),
             }
             truth::write_starts(folder, "starts.csv", &lists.starts)?;
@@ -122,7 +124,12 @@ impl Render {
         let (exposure, deep) = (prepared.image(view, key)?, prepared.is_deep());
         let (written, (starts, listed)) = rayon::join(
             || folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, deep)),
-            || (views::starts(prepared, view, &exposure.image, key), self.listed(scenario, &view.station.name, (&exposure.image, deep), key)),
+            || {
+                (
+                    views::starts(prepared, view, &exposure.image, key),
+                    self.listed(scenario, &view.station.name, (&exposure.image, deep), key),
+                )
+            },
         );
         written?;
         if self.noise_free {

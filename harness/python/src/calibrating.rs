@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
-    BoardShape, Calibration as Solved, CalibrationError as Unsolved, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve, prepare, suspected,
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve, prepare,
+    suspected,
 };
 use calibench_exchange::NamedCamera;
 use calibench_judge::BENT;
@@ -306,11 +307,13 @@ impl Pickled for Calibration {
         let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, suspected, summary, .. } = &self.done;
         let poses = poses.iter().map(|pose| Py::new(py, Pose(*pose))).collect::<PyResult<Vec<_>>>()?;
         let (covariance, residuals) = (of_matrix(py, covariance)?, self.residuals(py)?);
-        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, doubts, suspected, summary).into_bound_py_any(py)
+        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, doubts, suspected, summary)
+            .into_bound_py_any(py)
     }
 
     fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, summary): State<'_> = state.extract()?;
+        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, summary): State<'_> =
+            state.extract()?;
         let covariance = matrix(&covariance)?;
         let residuals = residuals.iter().map(|image| rows(image, "residuals")).collect::<PyResult<_>>()?;
         let poses = poses.iter().map(|pose| pose.get().0).collect();

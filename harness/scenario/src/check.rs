@@ -180,8 +180,7 @@ fn read(
     let listed_at: Vec<_> = listed.iter().map(|section| section.span.clone()).collect();
     let methods = methods(listed, registry, problems);
     let head: Option<Head> = root.read(&TOP_TABLES, problems);
-    let seed = head.as_ref().map_or(0, |head| head.seed.0);
-    let key = |of| Key { seed, of, trial: 0, view: "", target: "" };
+    let key = |of| Key { seed: head.as_ref().map_or(0, |head| head.seed.0), of, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
     let others = [&scene, &figure, &photographs, &judged, &calibration, &blocks, &recognition];
     let other = others.into_iter().flatten().next().map(|section| section.span.clone()).or_else(|| stray.clone());

@@ -98,7 +98,10 @@ mod tests {
     #[test]
     fn a_transfer_draws_the_same_for_whatever_method() {
         let with = |more: &str| drawn(&format!("[transfer]\nsigma_px = 0.1\n{more}"));
-        assert_eq!(with(""), with("[[transfer.method]]\nname = \"a\"\n[[transfer.case]]\nname = \"b\"\n[[transfer.decomposition]]\nname = \"c\"\n"));
+        assert_eq!(
+            with(""),
+            with("[[transfer.method]]\nname = \"a\"\n[[transfer.case]]\nname = \"b\"\n[[transfer.decomposition]]\nname = \"c\"\n")
+        );
         assert_ne!(with("").all, with("survey_sigma = 1\n").all);
         assert_ne!(with("").all, with("[transfer.board]\nsquare = 1\n").all);
     }
