@@ -58,6 +58,16 @@ pub enum ViewError {
         /// The other.
         back: String,
     },
+    /// The camera sees half of all directions or more: what it pictures has no outline in a plane.
+    #[error(
+        "the camera sees {angle:.0} degrees from its axis within {margin_px:.0} px of its frame; expected less than 90: a longer focal length, or a smaller size"
+    )]
+    Wide {
+        /// Angle from the axis, degrees.
+        angle: f64,
+        /// How far around the frame light matters, px.
+        margin_px: f64,
+    },
     /// Two plates that hide each other.
     #[error("plates `{0}` and `{1}` cut through each other")]
     Cut(String, String),
@@ -133,7 +143,11 @@ impl<'a> View<'a> {
         let sides = [-0.5 - margin, -0.5 - margin, right, bottom];
         let directions = polygon::border(self, sides).map_err(|at| {
             let middle = PixelPoint::new((f64::from(size.width) - 1.0) / 2.0, (f64::from(size.height) - 1.0) / 2.0);
-            let axis = self.camera.project(Ray { x: 0.0, y: 0.0, z: -1.0 }).unwrap_or(middle);
+            let ahead = Ray { x: 0.0, y: 0.0, z: -1.0 };
+            if let Ok(ray) = self.camera.unproject(at) {
+                return ViewError::Wide { angle: ray.angle_to(ahead).to_degrees(), margin_px: margin };
+            }
+            let axis = self.camera.project(ahead).unwrap_or(middle);
             ViewError::Fold { radius_px: at.distance(axis), margin_px: margin }
         })?;
         Ok(Frame { sides, directions })

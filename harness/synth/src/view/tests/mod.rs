@@ -5,7 +5,7 @@ mod rays;
 
 use std::f64::consts::PI;
 
-use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, Photogrammetric};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye, Photogrammetric};
 use calibench_model::testfield::axes;
 use calibench_model::{Area, Bend, ObjectTarget, Outline, Plate, Pose, TargetKind, Testfield};
 use nalgebra::{Point3, Vector3};
@@ -238,6 +238,12 @@ fn views_that_cannot_be_pictured_are_named() {
     assert_eq!(picture(&wall, &plain, &away), ViewError::Behind);
     let folded = camera([9.0, 0.0, 0.0]);
     assert!(matches!(picture(&wall, &folded, &ahead), ViewError::Fold { .. }));
+    // Equidistant: the corner of 800 px and what lies 6 px beyond it.
+    let size = ImageSize { width: 1280, height: 960 };
+    let fisheye = |f: f64| Camera::from(OpenCvFisheye { size, fx: f, fy: f, cx: 639.5, cy: 479.5, skew: 0.0, k: [0.0; 4] });
+    let ViewError::Wide { angle, .. } = picture(&wall, &fisheye(480.0), &ahead) else { panic!("95 degrees") };
+    assert!((angle - 96.5).abs() < 0.5, "{angle}");
+    assert!(View { field: &wall, camera: &fisheye(560.0), local: None, pose: &ahead }.picture(4.0).is_ok());
     let bend = Bend { peak: 0.05, middle: [0.0, 0.0], across: 0.0, reach: 0.4 };
     let bent = field(vec![plate("wall", [0.0, 0.0, 0.0], 1.0, None), plate("paper", [0.0, 0.0, 0.5], 0.4, Some(bend))]);
     assert_eq!(picture(&bent, &plain, &ahead), ViewError::BentBefore { front: "paper".into(), back: "wall".into() });
