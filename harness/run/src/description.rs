@@ -36,7 +36,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     Description {
         why: scenario.why.clone(),
         source: scenario.source.clone(),
-        notes: scenario.notes.clone(),
+        notes: scenario.notes.iter().cloned().chain(drawn_once(scenario)).collect(),
         seed: scenario.seed,
         trials: scenario.trials,
         bound_window: scenario.bound_window,
@@ -47,6 +47,20 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         subject,
         sweep: scenario.sweep.as_ref().map(sweep),
     }
+}
+
+/// What intervals over trials do not hold, where there are several.
+fn drawn_once(scenario: &Scenario) -> Option<String> {
+    let Subject::Views(subject) = &scenario.subject else { return None };
+    let pattern = subject.imaging.has_pattern().then_some("the pattern of the sensor");
+    let all: Vec<&str> = subject.drawn_once.iter().copied().chain(pattern).collect();
+    let told = scenario.trials > 1 && !all.is_empty();
+    told.then(|| {
+        format!(
+            "Drawn once, the same in all trials, so that no interval over trials holds what another draw would change: {}.",
+            all.join(", ")
+        )
+    })
 }
 
 /// The names of methods that find boards, each once.

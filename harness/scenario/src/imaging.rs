@@ -76,6 +76,11 @@ impl Imaging {
         self.sensor.as_ref().and_then(|setup| setup.sensor.bits()).is_some_and(|bits| bits > 8)
     }
 
+    /// Whether its pixels differ, the same in every image.
+    pub fn has_pattern(&self) -> bool {
+        self.sensor.as_ref().is_some_and(|setup| setup.sensor.design().noise.has_pattern())
+    }
+
     /// Whether a sensor's noise, or anything else in it, is random.
     pub fn is_random(&self) -> bool {
         self.sensor.as_ref().is_some_and(|setup| setup.row_jitter > 0.0 || !setup.sensor.is_deterministic())

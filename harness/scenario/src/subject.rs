@@ -109,6 +109,8 @@ pub struct ViewsSubject {
     pub stations: Vec<Station>,
     /// What draws other stations in each trial.
     pub redraw: Option<StationPlan>,
+    /// What is drawn by chance and is the same in all trials, in words.
+    pub drawn_once: Vec<&'static str>,
     /// Lens and sensor.
     pub imaging: Imaging,
     /// Who points at the targets, unless a detector does.

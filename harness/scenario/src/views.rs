@@ -117,7 +117,13 @@ impl<'i> ViewTables<'i> {
         let plan_of_stations = stations::read(self.stations, self.explicit, problems)?;
         let drawn = plan_of_stations.generate(&field, &camera, key);
         let stations = drawn.map_err(|error| problems.push(plan_of_stations.problem(&error))).ok()?;
-        let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
+        let moved = plan_of_stations.each_trial;
+        let once = [
+            ("the stations", plan_of_stations.is_random() && !moved),
+            ("the local distortion of the camera", local.is_some_and(|local| !local.each_trial)),
+        ];
+        let once = once.into_iter().filter_map(|(what, is_drawn)| is_drawn.then_some(what)).chain(plan.drawn()).collect();
+        let redraw = Some(plan_of_stations).filter(|_| moved);
         let (hand, clipped, detector) = match pointing {
             Pointing::Hand { hand, clipped } => (hand, clipped, None),
             Pointing::Harris(harris) => (NO_HAND, false, Some(Detector::Harris(harris))),
@@ -142,6 +148,7 @@ impl<'i> ViewTables<'i> {
             local,
             stations,
             redraw,
+            drawn_once: once,
             imaging,
             hand,
             clipped,

@@ -74,6 +74,11 @@ pub struct StationPlan {
 }
 
 impl StationPlan {
+    /// Whether places are drawn by chance.
+    pub fn is_random(&self) -> bool {
+        matches!(self.generator, Some(Generator::Random(_)))
+    }
+
     /// The stations, the given ones first, each of which sees the field.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
 use calibench_model::boards::{Board, Chessboard as PlainBoard};
 use calibench_random::Key;
-use calibench_synth::testfield::{Chessboard, Coded, FieldError, House, Wall};
+use calibench_synth::testfield::{Chessboard, Coded, FieldError, Fill, House, Wall};
 use toml::de::DeValue;
 
 use super::section::Section;
@@ -84,6 +84,23 @@ impl FieldPlan {
             Generator::Board(sheet) => sheet.generate(key),
             Generator::Tags(tags) => tags.generate(),
         }
+    }
+
+    /// What of it is drawn by chance, in words.
+    pub fn drawn(&self) -> Vec<&'static str> {
+        let words = match &self.generator {
+            Generator::Chessboard(board) => vec![("errors of the print", board.print_noise > 0.0)],
+            Generator::Board(sheet) => vec![("errors of the print", sheet.print_noise > 0.0)],
+            Generator::Wall(wall, panels) => vec![
+                ("the relief of the wall", panels.as_ref().is_some_and(|panels| panels.relief > 0.0 || panels.tilt > 0.0)),
+                ("the places of its targets", wall.fill.as_ref().is_some_and(Fill::is_random)),
+                ("errors of the survey", wall.survey_sigma > 0.0),
+            ],
+            Generator::Coded(_) => vec![("the layout of the field", true)],
+            Generator::House(house) => vec![("the texture of the walls", house.specks > 0)],
+            Generator::Tags(_) => Vec::new(),
+        };
+        words.into_iter().filter_map(|(what, is_drawn)| is_drawn.then_some(what)).collect()
     }
 
     /// The board that it is, if it is one.

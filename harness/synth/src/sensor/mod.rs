@@ -87,6 +87,15 @@ pub enum Noise {
 }
 
 impl Noise {
+    /// Whether pixels differ in response or offset, the same in every image of the camera.
+    pub const fn has_pattern(&self) -> bool {
+        match self {
+            Self::None => false,
+            Self::White { prnu, .. } => *prnu > 0.0,
+            Self::Electrons(electrons) => electrons.prnu > 0.0 || electrons.dsnu > 0.0,
+        }
+    }
+
     /// White noise `decibel` dB below `signal`, a grey value: the difference of light and dark targets for a signal-to-noise ratio of contrast, the
     /// mean grey value for one of the mean. `decibel` is 20 lg(signal / sigma), `prnu` the response's standard deviation as a fraction.
     pub fn white_below(signal: f64, decibel: f64, prnu: f64) -> Self {

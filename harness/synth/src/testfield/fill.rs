@@ -40,6 +40,13 @@ pub enum Turn {
     Random,
 }
 
+impl Fill {
+    /// Whether places or turns are drawn by chance.
+    pub fn is_random(&self) -> bool {
+        matches!(self.arrangement, Arrangement::Random { .. }) || self.turn == Turn::Random
+    }
+}
+
 /// The targets of every sheet of a wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fill {
