@@ -71,11 +71,10 @@ impl Structure {
         self.significance() < WHITE
     }
 
-    /// How much larger than for white noise the variance of what is estimated from many of them is, as their neighbours' correlation says: between what it is for residuals that
-    /// are alike along one axis and along both.
+    /// How much larger than for white noise the variance of what is estimated from many of them is, where their correlation falls by a factor from pixel to pixel along both axes.
     pub(crate) fn spread(&self) -> f64 {
         let correlation = (self.covariance() / (self.square / self.count)).clamp(0.0, STRONGEST);
-        ((1.0 + correlation) / (1.0 - correlation)).powf(1.5)
+        ((1.0 + correlation) / (1.0 - correlation)).powi(2)
     }
 
     /// The covariance of neighbours, in units of half the contrast squared.

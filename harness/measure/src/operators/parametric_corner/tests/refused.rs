@@ -5,10 +5,7 @@ use crate::tests::no_corners::accepted;
 
 /// Of all windows of a kind at most one in a thousand.
 fn refuses(spec: &str, windows: usize) {
-    let counts = accepted(&*operator(spec), windows);
-    // In a window of 11 px a texture of 3 px is no texture.
-    let held = if spec.starts_with("window=11") { counts.len() - 1 } else { counts.len() };
-    for (what, count) in &counts[..held] {
+    for (what, count) in accepted(&*operator(spec), windows) {
         assert!(count * 1000 <= windows, "{spec}, {what}: {count} of {windows}");
     }
 }
@@ -18,11 +15,12 @@ fn edges_noise_and_texture_are_no_corners() {
     refuses("window=15", 3000);
 }
 
-/// With a gradient or a curvature up to one texture in a hundred passes: the more unknowns, the more a saddle of grey values is like a corner.
+/// With a gradient, a curvature or a smaller window up to one texture in a hundred passes: the more unknowns and the fewer pixels, the more a saddle of grey values is like a
+/// corner.
 #[test]
 #[ignore = "takes minutes"]
 fn of_a_hundred_thousand_windows_next_to_none_is_taken_for_a_corner() {
-    for spec in ["window=15", "window=11", "window=21"] {
+    for spec in ["window=15", "window=21"] {
         refuses(spec, std::env::var("WINDOWS").map_or(100_000, |windows| windows.parse().unwrap()));
     }
 }
