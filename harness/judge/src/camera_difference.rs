@@ -8,7 +8,7 @@ use calibench_records::judgement::{Beside, Row, measure};
 use nalgebra::DVector;
 
 use super::frame::Frame;
-use super::halves::{COLUMNS, vectors};
+use super::halves::{COLUMNS, mean_square, vectors};
 
 /// Compares two cameras at the places of a grid; those that lie nearer to one of the `corners` than the grid is wide count as seen.
 ///
@@ -23,8 +23,8 @@ pub(super) fn beside(first: &Camera, second: &Camera, corners: &[PixelPoint]) ->
     let there = DVector::from_iterator(2 * seen.len(), seen.iter().flat_map(|&place| [vectors[2 * place], vectors[2 * place + 1]]));
     // A rotation has three parameters.
     let frame = if seen.len() > 2 { Frame::new(first, &[], &places) } else { None };
-    let seen = frame.map(|frame| (frame.without_rotation(&there).norm_squared() / seen.len() as f64).sqrt());
-    let frame = (lengths.iter().map(|l| l * l).sum::<f64>() / lengths.len() as f64).sqrt();
+    let seen = frame.map(|frame| mean_square(first.size(), &places, &frame.without_rotation(&there)).sqrt());
+    let frame = mean_square(first.size(), &at, &vectors).sqrt();
     Ok(Beside { frame, most: lengths.iter().copied().fold(0.0, f64::max), seen })
 }
 
@@ -43,6 +43,7 @@ pub(super) fn rows<'c>(camera: &Camera, others: impl Iterator<Item = (&'c Arc<st
 #[cfg(test)]
 mod tests {
     use calibench_model::camera::{ImageSize, OpenCv};
+    use calibench_model::convert::{DifferenceOptions, difference};
 
     use super::*;
 
@@ -64,5 +65,9 @@ mod tests {
         let found = beside(&camera(0.0), &camera(0.05), &everywhere).unwrap();
         assert!((found.seen.unwrap() - found.frame).abs() < 1e-3 * found.frame, "{found:?}");
         assert_eq!(beside(&camera(0.0), &camera(0.05), &[]).unwrap().seen, None);
+        // As `diff` has it: borders count for the half of a cell.
+        let options = DifferenceOptions { columns: COLUMNS, ..DifferenceOptions::default() };
+        let of_diff = difference(&camera(0.0), &camera(0.05), &options).unwrap().spread.rms_px;
+        assert!((found.frame / of_diff - 1.0).abs() < 1e-9, "{found:?} {of_diff}");
     }
 }

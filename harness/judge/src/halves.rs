@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use calibench_model::PixelPoint;
-use calibench_model::camera::Camera;
+use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use calibench_model::convert::{DifferenceOptions, difference};
 use calibench_random::{Key, Purpose, stream};
 use nalgebra::DVector;
@@ -11,7 +11,7 @@ use rand::seq::SliceRandom;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::calibrated::Calibrated;
-use super::frame::Frame;
+use super::frame::{Frame, weights};
 
 /// Places along the rows of the frame at which cameras are compared.
 pub const COLUMNS: usize = 13;
@@ -33,6 +33,8 @@ pub fn halves(views: &[usize], (seed, scenario): (u64, &str), split: u64) -> [Ve
 pub struct Apart {
     /// By place: squared difference and predicted variance, px^2 (2D).
     pub places: Vec<(PixelPoint, f64, f64)>,
+    /// Of each place in means over the area; their mean is 1.
+    weights: Vec<f64>,
     /// The modes of the difference, squared and over their predicted variances: the sum, a number; and how many they are.
     pub chi_square: (f64, usize),
     /// The chance (0 to 1) of as large a sum, if the covariances are right.
@@ -43,7 +45,8 @@ impl Apart {
     /// RMS over the frame of the difference, and the predicted one, px.
     pub fn rms(&self) -> (f64, f64) {
         let n = self.places.len() as f64;
-        let root = |of: fn(&(PixelPoint, f64, f64)) -> f64| (self.places.iter().map(of).sum::<f64>() / n).sqrt();
+        let all = || self.places.iter().zip(&self.weights);
+        let root = |of: fn(&(PixelPoint, f64, f64)) -> f64| (all().map(|(place, weight)| weight * of(place)).sum::<f64>() / n).sqrt();
         (root(|place| place.1), root(|place| place.2))
     }
 }
@@ -61,7 +64,8 @@ pub fn apart(first: &Calibrated, second: &Calibrated) -> Result<Apart, String> {
     let variances = frame.variances(&covariance);
     let places = at.iter().enumerate().map(|(k, at)| (*at, vectors[2 * k].powi(2) + vectors[2 * k + 1].powi(2), variances[k])).collect();
     let fisher = FisherSnedecor::new(modes as f64, (first.redundancy + second.redundancy) as f64).map_err(|error| error.to_string())?;
-    Ok(Apart { places, chi_square: (sum, modes), p: fisher.sf(sum / modes as f64) })
+    let weights = weights(first.camera.size(), &at);
+    Ok(Apart { places, weights, chi_square: (sum, modes), p: fisher.sf(sum / modes as f64) })
 }
 
 /// The difference from `first` to `second` over the frame after the best rotation: places, and x (right) and y (down) of each one's difference, px.
@@ -73,6 +77,12 @@ pub fn vectors(first: &Camera, second: &Camera) -> Result<(Vec<PixelPoint>, DVec
     let found = difference(first, second, &options).map_err(|error| error.to_string())?;
     let at = found.vectors.iter().map(|vector| vector.at).collect();
     Ok((at, DVector::from_iterator(2 * found.vectors.len(), found.vectors.iter().flat_map(|vector| [vector.dx, vector.dy]))))
+}
+
+/// The mean square length (2D, px^2) over the area of vectors at the places `at` of a grid over a frame: x and y of each, px.
+pub fn mean_square(size: ImageSize, at: &[PixelPoint], vectors: &DVector<f64>) -> f64 {
+    let squares = vectors.as_slice().chunks(2).map(|v| v[0].powi(2) + v[1].powi(2));
+    weights(size, at).iter().zip(squares).map(|(weight, square)| weight * square).sum::<f64>() / at.len() as f64
 }
 
 /// The places over the frame at which cameras are compared.

@@ -11,7 +11,7 @@ use nalgebra::DVector;
 
 use super::calibrated::{Calibrated, calibrate};
 use super::frame::Frame;
-use super::halves::{Map, apart, halves, places, vectors};
+use super::halves::{Map, apart, halves, mean_square, places, vectors};
 use super::holdout::{Squares, Unseen};
 use super::material::Material;
 use super::{Options, lines};
@@ -171,9 +171,9 @@ impl Job<'_> {
             Err(why) => rows.push(Row::without(measure::PUBLISHED, "", "failed", &why)),
             Ok((at, vectors)) => {
                 let lengths: Vec<f64> = vectors.as_slice().chunks(2).map(|v| v[0].hypot(v[1])).collect();
-                let rms = |squares: f64| (squares / lengths.len() as f64).sqrt();
-                let predicted = Frame::new(&all.camera, &all.names, &at).map(|frame| rms(frame.variances(&all.covariance).iter().sum()));
-                rows.push(Row::px(measure::PUBLISHED, "", rms(lengths.iter().map(|l| l * l).sum())).beside(predicted.unwrap_or(f64::NAN)));
+                let predicted = Frame::new(&all.camera, &all.names, &at).map(|frame| frame.spread(&all.covariance).0.sqrt());
+                let rms = mean_square(all.camera.size(), &at, &vectors).sqrt();
+                rows.push(Row::px(measure::PUBLISHED, "", rms).beside(predicted.unwrap_or(f64::NAN)));
                 rows.push(Row::px(measure::PUBLISHED_MOST, "", lengths.iter().copied().fold(0.0, f64::max)));
             }
         }
@@ -209,11 +209,10 @@ fn over_frame(all: &Calibrated, without: &[DVector<f64>]) -> Vec<Row> {
 
 /// The mean variance (2D, px^2) over the frame that groups show which were left out in turn.
 fn jackknife(frame: &Frame, without: &[DVector<f64>]) -> Option<f64> {
-    let (groups, first) = (without.len() as f64, without.first()?);
+    without.first()?;
+    let groups = without.len() as f64;
     let mean = without.iter().sum::<DVector<f64>>() / groups;
-    let moved = |values: &DVector<f64>| frame.moved(&(values - &mean));
-    let places = moved(first).len() as f64 / 2.0;
-    Some((groups - 1.0) / groups * without.iter().map(|values| moved(values).norm_squared()).sum::<f64>() / places)
+    Some((groups - 1.0) / groups * without.iter().map(|values| frame.moved(&(values - &mean))).sum::<f64>())
 }
 
 fn principal(found: &Calibrated, place: &str) -> Vec<Row> {

@@ -119,7 +119,7 @@ fn of_a_coded_board_a_part_is_enough_and_of_others_nothing_is_found() {
         (measured, found.points.len())
     };
     let (of_squares, of_markers) = (counts("chessboard:7x6:30"), counts("charuco:8x7:30:21:DICT_4X4_50"));
-    assert!(of_squares.1 > 50 && of_markers.1 == of_squares.1, "{of_squares:?} {of_markers:?}");
+    assert!(of_squares.1 > 50 && of_markers.1 > 50, "{of_squares:?} {of_markers:?}");
     assert!(of_squares.0 < of_squares.1 * 9 / 10, "{of_squares:?}");
     assert!(10 * of_markers.0 > 9 * of_markers.1, "{of_markers:?}");
 }
