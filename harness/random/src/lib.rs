@@ -58,7 +58,7 @@ pub enum Purpose {
 pub struct Key<'a> {
     /// The scenario's seed.
     pub seed: u64,
-    /// For what they are drawn: scenarios that picture something else share no numbers under one seed.
+    /// For what they are drawn: scenarios of something else share no numbers under one seed.
     pub of: &'a str,
     /// Counted from 0.
     pub trial: u64,
