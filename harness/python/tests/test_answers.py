@@ -31,7 +31,8 @@ def board(program, tmp_path):
     program("--root", ROOT, "render", "testfields/chessboard", "-o", "board", "-q")
     images = sorted(str(path.relative_to(tmp_path)) for path in (tmp_path / "board").glob("*.png"))
     program("detect", *images, "--chessboard", "9x6", "-o", "points.csv", "-q")
-    program("calibrate", *images, "--chessboard", "9x6:25", "-o", "camera.yaml", "-q")
+    # No corner is near the borders, where the model of the five coefficients folds: that is said, and the camera is written.
+    program("calibrate", *images, "--chessboard", "9x6:25", "-o", "camera.yaml", "-q", code=3)
     return images
 
 

@@ -10,19 +10,8 @@ const FIELD: &str = "testfield";
 const PICTURED: [&str; 6] = ["scene", "figure", "photographs", "camera", "stations", "station"];
 const TRANSFER: &str = "transfer";
 /// Keys of these tables that say how much is drawn, how it becomes grey values, or what is done with it: whoever changes one of them alone draws the same numbers.
-const ASIDE: [&str; 11] = [
-    "grey_noise",
-    "bits",
-    "phase",
-    "pixels",
-    "pointing",
-    "print_noise",
-    "survey_sigma",
-    "sigma_px",
-    "method",
-    "case",
-    "decomposition",
-];
+const ASIDE: [&str; 11] =
+    ["grey_noise", "bits", "phase", "pixels", "pointing", "print_noise", "survey_sigma", "sigma_px", "method", "case", "decomposition"];
 
 /// For what the random numbers of a scenario are drawn, as digests: what is pictured, from where. With the seed they are all that draws depend on: not its name and words, not
 /// light, sensor, amounts of noise and methods, nor what is made of its points. Cells of a sweep draw the same.
