@@ -119,7 +119,7 @@ fn a_board_on_its_side_is_counted_whole() {
 fn opencv_and_ours_number_a_board_with_three_dots_alike() {
     let project = scenario("dotted:15x9:25:11,2", "detect");
     let file = project.path().join("scenarios/mine/board.toml");
-    let stations = "kind = \"random\"\ncount = 6\ndistance = [300, 420]\ntilt = 30\nroll = 180\naside = [60, 40]\nsees = 0.4\n";
+    let stations = "kind = \"random\"\ncount = 12\ndistance = [300, 420]\ntilt = 30\nroll = 180\naside = [60, 40]\nsees = 0.4\n";
     let text = std::fs::read_to_string(&file).unwrap();
     let text = text.replace("kind = \"board\"\ntilts = [[10, 5]]\ndistances = [640]\nrolls = [0]\n", stations);
     let text = format!("{text}[[method]]\nname = \"opencv_find_chessboard\"\nsb = 1\n");
