@@ -37,7 +37,7 @@ class Pointing(Page):
         self.settle()
         return self
 
-    def wait(self, script, *arguments, seconds=5):
+    def wait(self, script, *arguments, seconds=30):
         until = time.time() + seconds
         while not self.run(script, *arguments):
             assert time.time() < until, script

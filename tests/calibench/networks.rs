@@ -61,7 +61,7 @@ fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
     let calibration = views.calibration.as_ref().unwrap();
     let trial = first_trial(&scenario);
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
-    let key = Key { seed: scenario.seed, of: NAME, trial: 0, view: "", target: "" };
+    let key = Key { seed: scenario.seed, of: &scenario.drawn, trial: 0, view: "", target: "" };
     let observed = observe(&job, &trial.points, key);
     let name = |target: usize| views.field.targets[target].id.clone();
     let row = |point: &ImagePoint| PointRow {

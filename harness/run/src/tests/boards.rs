@@ -150,7 +150,7 @@ fn images_without_the_board_are_left_out_and_counted() {
 #[test]
 fn the_predicted_error_over_the_frame_is_the_one_that_trials_have() {
     let many = [
-        ("trials = 1", "trials = 60"),
+        ("trials = 1", "trials = 240"),
         ("detector = \"board\"", "sigma = 0\nwhole_pixels = false"),
         ("grey_noise = 0.002", "grey_noise = 0.02"),
     ];
