@@ -21,7 +21,7 @@ fn writers() -> Vec<Writer> {
         "--model",
         "opencv4:fx,fy,cx,cy",
         "--model",
-        "opencv4+bent",
+        "photogrammetric+bent",
         "--splits",
         "1",
     ];
