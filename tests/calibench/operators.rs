@@ -112,9 +112,9 @@ fn worst(testfield: &str, blur: f64, methods: &[&str], trials: u64) -> Vec<f64> 
     worst
 }
 
-/// Errors of `lsm` with its blur held and estimated, px. Held at what the lens has, it is another than that of lens and pixel together: up to 4e-4 px by the draw of places.
+/// Errors of `lsm` with its blur held and estimated, px. Held, it is the operator that errs and not the picture: up to 0.005 px, of a triangle, by the draw of places.
 fn are_exact(worst: &[f64]) -> bool {
-    worst[0] <= 5e-4 && worst[1] <= 2e-4
+    worst[0] <= 1e-2 && worst[1] <= 1e-4
 }
 
 #[test]
