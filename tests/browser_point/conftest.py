@@ -5,6 +5,7 @@ CALIBENCH_SHOTS: a folder for pictures. CALIBENCH_CHROMIUM and CALIBENCH_CHROMED
 """
 
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -27,7 +28,8 @@ def opened(driver, url, name):
     page.console()
     page.requests()
     page.driver.get(url)
-    page.run("try { localStorage.clear(); } catch {}")
+    # Nor does a page that is left write its copy once more.
+    page.run("try { localStorage.clear(); Storage.prototype.setItem = () => {}; } catch {}")
     page.open()
     return page
 
@@ -59,8 +61,10 @@ def free(driver):
 
 @pytest.fixture
 def served(driver):
-    # Points of the test before are on the disk, and in the page until it is left.
-    driver.get("about:blank")
+    # Points of the test before are on the disk, and what the server has not got yet waits in the browser: a page of the same server without a script lets go of both.
+    driver.get(ABOUT["url"] + "nothing")
+    time.sleep(0.5)
+    driver.execute_script("localStorage.clear()")
     (Path(ABOUT["folder"]) / "pointed.csv").unlink(missing_ok=True)
     page = opened(driver, ABOUT["url"], "served")
     yield page
