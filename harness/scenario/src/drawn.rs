@@ -27,7 +27,7 @@ impl Drawn {
     /// That of the table of a file; of a sweep, whatever values it has.
     pub(crate) fn of(root: &DeTable<'_>, sweep: Option<&Sweep>) -> Self {
         let mut root = sweep.map_or_else(|| root.clone(), |sweep| sweep.without_values(root));
-        for (_, table) in root.iter_mut() {
+        for (_, table) in &mut root {
             if let DeValue::Table(table) = table.get_mut() {
                 ASIDE.iter().for_each(|key| drop(table.remove(*key)));
             }
