@@ -58,8 +58,8 @@ height = 1.0
 [testfield.fill]
 kinds = KINDS
 size = 0.05
-rows = 6
-columns = 6
+rows = 5
+columns = 5
 "#;
 
 /// Runs `trials` trials and hands on each target's results by label, in the order of `methods`.
@@ -112,9 +112,12 @@ fn worst(testfield: &str, blur: f64, methods: &[&str], trials: u64) -> Vec<f64> 
     worst
 }
 
-/// Errors of `lsm` with its blur held and estimated, px. Held, it is the operator that errs and not the picture: up to 0.005 px, of a triangle, by the draw of places.
-fn are_exact(worst: &[f64]) -> bool {
-    worst[0] <= 1e-2 && worst[1] <= 1e-4
+/// A window in which no other target of [`SHAPES`] stands, however it is tilted: with the blur held `lsm` leaves out only what stands far off.
+const ALONE: usize = 25;
+
+/// With its blur held at the lens's and estimated, without noise.
+fn matching(window: usize) -> [String; 2] {
+    ["sigma=0.7,sharpness=0", "sharpness=1"].map(|blur| format!("lsm:window={window},{blur}"))
 }
 
 #[test]
@@ -123,9 +126,9 @@ fn without_noise_renders_are_measured_to_two_ten_thousandths_of_a_pixel() {
         let worst = worst(BOARD, blur, &["parametric_corner"], 6);
         assert!(worst[0] <= 2e-4, "blur {blur}: {worst:?}");
     }
-    let known =
-        worst(&shapes(r#"["disc", "square", "triangle", "cross"]"#), 0.7, &["lsm:window=31,sigma=0.7,sharpness=0", "lsm:window=31"], 6);
-    assert!(are_exact(&known), "{known:?}");
+    let [held, sought] = matching(ALONE);
+    let known = worst(&shapes(r#"["disc", "square", "triangle", "cross"]"#), 0.7, &[&held, &sought], 6);
+    assert!(known.iter().all(|worst| *worst <= 2e-4), "{known:?}");
     let circle = worst(&shapes(r#"["disc"]"#), 0.7, &["parametric_circle"], 6);
     assert!(circle[0] <= 2e-4, "{circle:?}");
 }
@@ -134,14 +137,15 @@ fn without_noise_renders_are_measured_to_two_ten_thousandths_of_a_pixel() {
 #[test]
 fn the_truth_s_map_is_a_start_for_every_kind_of_target() {
     let large = |kinds: &str| {
-        shapes(kinds).replace("size = 0.05\nrows = 6\ncolumns = 6", "size = 0.13\nangles = [60, 90, 140]\nrows = 2\ncolumns = 2")
+        shapes(kinds).replace("size = 0.05\nrows = 5\ncolumns = 5", "size = 0.13\nangles = [60, 90, 140]\nrows = 2\ncolumns = 2")
     };
     for kind in TargetKind::ALL.into_iter().filter(|kind| !kind.outlines().is_empty()) {
         let is_open = matches!(kind, TargetKind::Corner | TargetKind::ChessCorner);
         let kinds = format!("[\"{kind}\"]");
-        let (field, window, trials) = if is_open { (large(&kinds), 15, 30) } else { (shapes(&kinds), 31, 6) };
-        let worst = worst(&field, 0.7, &[&format!("lsm:window={window},sigma=0.7,sharpness=0"), &format!("lsm:window={window}")], trials);
-        assert!(are_exact(&worst), "{kind}: {worst:?}");
+        let (field, window, trials) = if is_open { (large(&kinds), 15, 30) } else { (shapes(&kinds), ALONE, 6) };
+        let [held, sought] = matching(window);
+        let worst = worst(&field, 0.7, &[&held, &sought], trials);
+        assert!(worst.iter().all(|worst| *worst <= 2e-4), "{kind}: {worst:?}");
     }
 }
 
@@ -195,6 +199,6 @@ fn a_tenth_of_noise_and_a_start_within_four_pixels_lose_less_than_one_in_a_thous
         assert!(points >= 2996 && lost.iter().all(|lost| upper_limit(*lost, points) <= 1e-3), "{methods:?} lose {lost:?} of {points}");
     };
     check(BOARD, &["parametric_corner"], 200);
-    check(&shapes(r#"["disc", "square", "triangle", "cross"]"#), &["lsm:window=31,sigma=0.7,sharpness=0", "lsm:window=31"], 100);
-    check(&shapes(r#"["disc"]"#), &["parametric_circle"], 100);
+    check(&shapes(r#"["disc", "square", "triangle", "cross"]"#), &["lsm:window=31,sigma=0.7,sharpness=0", "lsm:window=31"], 150);
+    check(&shapes(r#"["disc"]"#), &["parametric_circle"], 150);
 }
