@@ -9,7 +9,7 @@ use calibench_report::camera_card;
 use calibench_report::json::CameraFileAnswer;
 use clap::Args;
 
-use super::reading::{Reading, is_doubtful};
+use super::reading::Reading;
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
@@ -29,7 +29,7 @@ impl CameraCommand {
         let (file, count) = opened.file(if self.answered.json { usize::MAX } else { MOST_LISTED })?;
         let format = file.format;
         let camera = self.reading.one_of(&self.file, opened)?;
-        let doubt = || if is_doubtful(&camera.camera) { Err(Failure::Doubt) } else { Ok(()) };
+        let doubt = || if camera.implausible { Err(Failure::Doubt) } else { Ok(()) };
         if self.answered.json {
             answer(&CameraFileAnswer::new(&self.file.display().to_string(), &file, &camera))?;
             return doubt();

@@ -8,7 +8,7 @@ use calibench_exchange::camera::open_points::{self, OpenPoints};
 use calibench_exchange::camera::{
     self, CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with,
 };
-use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification, implausible};
+use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
 use calibench_model::escape;
 use clap::{Args, ValueEnum};
 
@@ -203,11 +203,6 @@ impl Reading {
         }
         cameras
     }
-}
-
-/// Whether no lens has a camera: what is said of it when it is read is a doubt of the exit code too.
-pub fn is_doubtful(camera: &Camera) -> bool {
-    !implausible(camera).is_empty()
 }
 
 /// A camera file: a long list that is read in pieces, or all of it.

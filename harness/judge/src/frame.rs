@@ -2,16 +2,15 @@
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, DerivativeBuffer, ImageSize};
+use calibench_model::convert::cell_share;
 use nalgebra::{DMatrix, DVector};
 
 /// Modes of a difference whose predicted share of the variance is smaller are not tested: there the linear prediction is not what decides.
 const SMALLEST: f64 = 1e-3;
 
-/// The weights of places of a grid from the first pixel to the last for means over the area, their mean 1: a place of the border stands for half of a cell, one of a corner for
-/// a quarter.
+/// The weights of places of a grid from the first pixel to the last for means over the area, their mean 1.
 pub fn weights(size: ImageSize, at: &[PixelPoint]) -> Vec<f64> {
-    let along = |value: f64, length: u32| if value <= 0.0 || value >= f64::from(length - 1) { 0.5 } else { 1.0 };
-    let cells: Vec<f64> = at.iter().map(|at| along(at.x, size.width) * along(at.y, size.height)).collect();
+    let cells: Vec<f64> = at.iter().map(|at| cell_share(size, *at)).collect();
     let mean = cells.iter().sum::<f64>() / cells.len() as f64;
     cells.into_iter().map(|cell| cell / mean).collect()
 }

@@ -1,6 +1,7 @@
 //! What the uncertainty of an interior orientation means in the image.
 
 use calibench_model::camera::{Camera, CameraModel, DerivativeBuffer, Ray};
+use calibench_model::convert::cell_share;
 use calibench_model::{Covariance, PixelPoint};
 use nalgebra::DMatrix;
 
@@ -47,7 +48,7 @@ pub fn frame_uncertainty(
     if covariance.shape() != (names.len(), names.len()) {
         return Err(AdjustError::NotAvailable(NEEDS));
     }
-    let of = |(k, (_, at, _)): (usize, &Seen)| {
+    let of = |(k, (at, _)): (usize, &Seen)| {
         let e = left.rows(2 * k, 2);
         let q = e * covariance * e.transpose();
         Uncertainty { at: *at, covariance: Covariance { sxx: q[(0, 0)], sxy: q[(0, 1)], syy: q[(1, 1)] } }
@@ -61,15 +62,13 @@ pub fn frame_uncertainty(
 /// # Errors
 /// As [`frame_uncertainty`].
 pub fn frame_weight(camera: &Camera, names: &[&str], grid: (usize, usize), distance: Distance) -> Result<DMatrix<f64>, AdjustError> {
-    let (columns, rows) = grid;
-    let along = |i: usize, n: usize| if i == 0 || i + 1 == n { 0.5 } else { 1.0 };
-    let weight = |place: usize| along(place % columns, columns) * along(place / columns, rows);
+    let weight = |at: PixelPoint| cell_share(camera.size(), at);
     let (seen, left) = effects(camera, names, grid, distance, weight)?;
     Ok(left.tr_mul(&left) / seen.iter().map(|seen| weight(seen.0)).sum::<f64>())
 }
 
-/// A place of the grid, row by row, where it is, and its ray.
-type Seen = (usize, PixelPoint, Ray);
+/// A place of the grid and its ray.
+type Seen = (PixelPoint, Ray);
 
 /// Places of the grid with their rays, and what the parameters do there that no motion of the camera does, times the root of the place's weight: two rows a place,
 /// a column a parameter.
@@ -78,7 +77,7 @@ fn effects(
     names: &[&str],
     (columns, rows): (usize, usize),
     distance: Distance,
-    weight: impl Fn(usize) -> f64,
+    weight: impl Fn(PixelPoint) -> f64,
 ) -> Result<(Vec<Seen>, DMatrix<f64>), AdjustError> {
     let parameters = camera.parameters();
     let places: Vec<usize> = names.iter().filter_map(|name| parameters.iter().position(|parameter| parameter.name == *name)).collect();
@@ -93,7 +92,7 @@ fn effects(
     let size = camera.size();
     let along = |i: usize, n: usize, length: u32| f64::from(length - 1) * i as f64 / (n - 1) as f64;
     let grid = (0..columns * rows).map(|k| PixelPoint::new(along(k % columns, columns, size.width), along(k / columns, rows, size.height)));
-    let seen: Vec<Seen> = grid.enumerate().filter_map(|(place, at)| Some((place, at, camera.unproject(at).ok()?))).collect();
+    let seen: Vec<Seen> = grid.filter_map(|at| Some((at, camera.unproject(at).ok()?))).collect();
     let (mut interior, mut exterior) = slopes(camera, &seen, &places, shift);
     for (k, seen) in seen.iter().enumerate() {
         let root = weight(seen.0).sqrt();
@@ -112,7 +111,7 @@ fn slopes(camera: &Camera, seen: &[Seen], places: &[usize], shift: Option<f64>) 
     let mut interior = DMatrix::zeros(2 * seen.len(), places.len());
     let mut exterior = DMatrix::zeros(2 * seen.len(), if shift.is_some() { 6 } else { 3 });
     let mut buffer = DerivativeBuffer::default();
-    for (k, (_, _, ray)) in seen.iter().enumerate() {
+    for (k, (_, ray)) in seen.iter().enumerate() {
         let ray = at_depth(*ray, shift);
         if camera.derivatives_into(ray, &mut buffer).is_err() {
             continue;

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 use super::context::Context;
 use super::output;
-use super::reading::{Reading, is_doubtful};
+use super::reading::Reading;
 use crate::deliver::{As, answer, stream};
 use crate::failure::Failure;
 use said::Said;
@@ -151,7 +151,7 @@ impl Convert {
 
     /// A camera in the new convention, and the format of its file.
     fn converted(&self, source: &NamedCamera, label: Option<&str>, plot: Option<&OutputFile>, quiet: bool) -> Result<Answer, Failure> {
-        let doubtful = is_doubtful(&source.camera);
+        let doubtful = source.implausible;
         let order = self.reading.open_points().order();
         let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order, output: self.output.as_deref() };
         let goal = goal(&self.to, &given).map_err(no_target)?;

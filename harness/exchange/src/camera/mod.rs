@@ -86,6 +86,8 @@ pub struct NamedCamera {
     pub covariance: Option<ParameterCovariance>,
     /// What the user should know: what was assumed, what was left out.
     pub notes: Vec<String>,
+    /// Whether one of these says that no lens has the camera.
+    pub implausible: bool,
 }
 
 impl NamedCamera {
@@ -100,6 +102,7 @@ impl NamedCamera {
             pose_frame: PoseFrame::World,
             covariance: None,
             notes: Vec::new(),
+            implausible: false,
         }
     }
 

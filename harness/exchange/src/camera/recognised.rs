@@ -74,7 +74,9 @@ fn names(formats: &[&CameraFormat]) -> String {
 /// Notes with the camera at a place of its file what no lens has.
 pub(super) fn doubt(place: usize, named: &mut NamedCamera) {
     if place < MOST_DOUBTED {
-        named.notes.extend(implausible(&named.camera).iter().map(|fault| format!("in doubt: {fault}")));
+        let faults = implausible(&named.camera);
+        named.implausible = !faults.is_empty();
+        named.notes.extend(faults.iter().map(|fault| format!("in doubt: {fault}")));
     }
 }
 

@@ -135,6 +135,13 @@ impl<const P: usize> Scaled<P> {
     }
 }
 
+/// Makes an unknown stay.
+fn hold<const P: usize>(n: &mut SMatrix<f64, P, P>, unknown: usize) {
+    n.row_mut(unknown).fill(0.0);
+    n.column_mut(unknown).fill(0.0);
+    n[(unknown, unknown)] = 1.0;
+}
+
 impl<const P: usize> Normal<P> {
     /// The factor of the damped normal matrix, the step and its squared length; unknowns that are `held`, by number and right-hand side, stay.
     ///
@@ -145,9 +152,8 @@ impl<const P: usize> Normal<P> {
         for i in 0..P {
             n[(i, i)] *= 1.0 + damping;
             if held(i, b[i]) {
-                n.row_mut(i).fill(0.0);
-                n.column_mut(i).fill(0.0);
-                (n[(i, i)], b[i]) = (1.0, 0.0);
+                hold(&mut n, i);
+                b[i] = 0.0;
             }
         }
         let factor = decompose(&n).ok_or(Rejection::NotConverged)?;
@@ -164,11 +170,7 @@ impl<const P: usize> Normal<P> {
     /// The cofactor of one unknown, of `N^-1`, where others are held; `None` when those that are free are not determined.
     pub(crate) fn cofactor(&self, unknown: usize, held: impl Fn(usize) -> bool) -> Option<f64> {
         let mut n = self.n;
-        for i in (0..P).filter(|i| held(*i)) {
-            n.row_mut(i).fill(0.0);
-            n.column_mut(i).fill(0.0);
-            n[(i, i)] = 1.0;
-        }
+        (0..P).filter(|i| held(*i)).for_each(|i| hold(&mut n, i));
         let unit = SVector::from_fn(|i, _| if i == unknown { 1.0 } else { 0.0 });
         Some(decompose(&n)?.solve(&unit)[unknown])
     }

@@ -71,6 +71,13 @@ pub(super) struct Sight {
     pub(super) ray: Ray,
 }
 
+/// The share of a cell for which a place of a grid from the first pixel to the last stands in a mean over the area (trapezoidal rule): half of one at a border, a quarter in a
+/// corner.
+pub fn cell_share(size: ImageSize, at: PixelPoint) -> f64 {
+    let along = |value: f64, length: u32| if value <= 0.0 || value >= f64::from(length) - 1.0 { 0.5 } else { 1.0 };
+    along(at.x, size.width) * along(at.y, size.height)
+}
+
 /// Rows of a grid at most, in columns: frames that are taller have oblong cells, so that the cost does not grow with a stated size.
 const TALLEST: usize = 4;
 
@@ -80,14 +87,12 @@ pub(super) fn nodes(size: ImageSize, columns: usize) -> Vec<Node> {
     let (width, height) = (f64::from(size.width.max(2) - 1), f64::from(size.height.max(2) - 1));
     let columns = columns.max(3);
     let rows = (((columns - 1) as f64 * height / width).round() as usize + 1).clamp(3, TALLEST * columns);
-    let weight = |i: usize, count: usize| if i == 0 || i + 1 == count { 0.5 } else { 1.0 } / (count - 1) as f64;
+    let cell = 1.0 / (columns - 1) as f64 * (1.0 / (rows - 1) as f64);
     let place = |i: usize, count: usize, length: f64| length * i as f64 / (count - 1) as f64;
     (0..rows)
         .flat_map(|row| (0..columns).map(move |column| (column, row)))
-        .map(|(column, row)| Node {
-            point: PixelPoint::new(place(column, columns, width), place(row, rows, height)),
-            weight: weight(column, columns) * weight(row, rows),
-        })
+        .map(|(column, row)| PixelPoint::new(place(column, columns, width), place(row, rows, height)))
+        .map(|point| Node { point, weight: cell_share(size, point) * cell })
         .collect()
 }
 

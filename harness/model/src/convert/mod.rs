@@ -27,7 +27,7 @@ use fit::{Problem, State};
 use grid::{Sight, sights, spread};
 
 pub use difference::{Compensated, Difference, DifferenceOptions, difference, difference_at};
-pub use grid::{Region, Spread, Vector};
+pub use grid::{Region, Spread, Vector, cell_share};
 pub use mistake::{Mistake, mistaken};
 pub use naive::{Tangential, from_naive, naive};
 pub use rotation::Rotation;
