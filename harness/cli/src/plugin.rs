@@ -8,7 +8,7 @@ use calibench_plugins::{
     Confinement, Declaration, Declared, Finding, Launcher, Recording, Starts, check, confine_and_execute, method, parse,
 };
 use calibench_project::ProjectError;
-use calibench_run::origin::{Origin, check_origins, origins};
+use calibench_run::origin::{DIRECTIONS, Origin, check_origins, origins};
 use clap::{Args, Subcommand};
 
 use super::context::Context;
@@ -75,12 +75,12 @@ fn of_boards(configured: &Configured) -> Result<Vec<Finding>, Failure> {
     if let Some(finder) = configured.board_finder() {
         let origins = origins(finder).map_err(|error| Failure::input(error.to_string()))?;
         for (board, Origin { median, error, points: [all, found] }) in &origins {
-            let [x, y] = [0, 1].map(|axis| format!("{:+.3} ± {:.3}", median[axis], error[axis]));
-            print(&format!("  note    {board}: {found} of {all} points, {x}, {y} px off in the median\n"))?;
+            let off = [0, 1, 2].map(|k| format!("{:+.3} ± {:.3} {}", median[k], error[k], DIRECTIONS[k])).join(", ");
+            print(&format!("  note    {board}: {found} of {all} points; in the median off, px: {off}\n"))?;
         }
         let wrong = check_origins(finder, &origins).err().map(|wrong| with_notes(configured, wrong));
         findings
-            .push(Finding { what: "boards at 16 phases are found, their points in the median where its origin of the pixel says", wrong });
+            .push(Finding { what: "boards at 16 phases are found, their points in the median where its `origin` and `outwards` say", wrong });
     }
     Ok(findings)
 }

@@ -46,6 +46,12 @@ pub trait BoardFinder: Send + Sync {
         [0.0; 2]
     }
 
+    /// How far such a board's points lie away from the middle of the marker whose corners they are, or of the board, px, as far as that is known of it: below zero
+    /// what it sees too small.
+    fn outwards(&self, _: &Board) -> f64 {
+        0.0
+    }
+
     /// The points that it sees, each at most once, in any order.
     ///
     /// # Errors

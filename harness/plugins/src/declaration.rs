@@ -94,6 +94,8 @@ pub struct Boards {
     pub kinds: Vec<String>,
     /// Whether (0, 0) is the outer corner of the first pixel in its answers.
     pub from_corner: bool,
+    /// How far its points lie away from the middle of their marker, or of the board, px.
+    pub outwards: f64,
 }
 
 #[derive(Deserialize)]
@@ -113,6 +115,7 @@ pub(crate) struct Wire {
     radius: Option<Spanned<f64>>,
     boards: Option<Spanned<Vec<String>>>,
     origin: Option<Spanned<String>>,
+    outwards: Option<Spanned<f64>>,
     seconds: Option<Spanned<f64>>,
     memory: Option<Spanned<String>>,
 }
@@ -138,7 +141,7 @@ pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Op
     let before = problems.len();
     problems.extend(no_name(&wire.name));
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
-    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, seconds, memory } = wire;
+    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, outwards, seconds, memory } = wire;
     if command.as_ref().first().is_none_or(String::is_empty) {
         wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
     }
@@ -146,7 +149,7 @@ pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Op
         wrong(span, message);
         Mode::Stream
     });
-    let starts = starts::checked(starts.as_ref(), radius.as_ref(), boards.as_ref(), origin.as_ref(), &mut wrong);
+    let starts = starts::checked(&starts::Wire { starts, radius, boards, origin, outwards }, &mut wrong);
     let limit = seconds.as_ref().map_or(SECONDS, |seconds| *seconds.as_ref());
     if let Some(seconds) = seconds.filter(|_| !(limit > 0.0 && limit <= 86_400.0)) {
         wrong(seconds.span(), format!("expected seconds from more than 0 to 86400, found {limit}"));

@@ -137,6 +137,10 @@ impl BoardFinder for Asked {
             .then(|| format!("it finds these alone: {}", kinds.join(", ")))
     }
 
+    fn outwards(&self, _: &Board) -> f64 {
+        self.boards().map_or(0.0, |boards| boards.outwards)
+    }
+
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {
         let from_corner = self.boards().is_some_and(|boards| boards.from_corner);
         let found = self.ask(image, Wanted::Board(sought)).and_then(|answer| points_of(&answer, sought, from_corner));

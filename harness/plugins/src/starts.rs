@@ -10,28 +10,43 @@ use crate::declaration::{Boards, Starts};
 /// How near a detection must be to a target unless the file says otherwise, px.
 const RADIUS: f64 = 5.0;
 
-/// What `starts` says, with the keys that belong to one of its values alone; mistakes are handed to `wrong`.
-pub fn checked(
-    starts: Option<&Spanned<String>>,
-    radius: Option<&Spanned<f64>>,
-    boards: Option<&Spanned<Vec<String>>>,
-    origin: Option<&Spanned<String>>,
-    wrong: &mut impl FnMut(Range<usize>, String),
-) -> Starts {
-    let word = starts.map_or("given", |word| word.as_ref().as_str());
-    if let Some(radius) = radius.filter(|_| word != "none") {
+/// How far a detector may say that its points lie outwards, px.
+const OUTWARDS: f64 = 10.0;
+
+/// The key `starts`, and those that belong to one of its values alone.
+pub struct Wire {
+    pub starts: Option<Spanned<String>>,
+    pub radius: Option<Spanned<f64>>,
+    pub boards: Option<Spanned<Vec<String>>>,
+    pub origin: Option<Spanned<String>>,
+    pub outwards: Option<Spanned<f64>>,
+}
+
+/// What they say; mistakes are handed to `wrong`.
+pub fn checked(wire: &Wire, wrong: &mut impl FnMut(Range<usize>, String)) -> Starts {
+    let Wire { starts, radius, boards, origin, outwards } = wire;
+    let word = starts.as_ref().map_or("given", |word| word.as_ref().as_str());
+    if let Some(radius) = radius.as_ref().filter(|_| word != "none") {
         wrong(radius.span(), "`radius` is for starts = \"none\"".into());
     }
-    let for_boards = [boards.map(|boards| ("boards", boards.span())), origin.map(|origin| ("origin", origin.span()))];
+    let for_boards = [
+        boards.as_ref().map(|boards| ("boards", boards.span())),
+        origin.as_ref().map(|origin| ("origin", origin.span())),
+        outwards.as_ref().map(|outwards| ("outwards", outwards.span())),
+    ];
     for (key, span) in for_boards.into_iter().flatten().filter(|_| word != "board") {
         wrong(span, format!("`{key}` is for starts = \"board\""));
     }
     match word {
         "given" => Starts::Given,
-        "none" => Starts::None { radius: near(radius, wrong) },
-        "board" => Starts::Board(Boards { kinds: kinds(boards, wrong), from_corner: from_corner(origin, wrong) }),
+        "none" => Starts::None { radius: near(radius.as_ref(), wrong) },
+        "board" => Starts::Board(Boards {
+            kinds: kinds(boards.as_ref(), wrong),
+            from_corner: from_corner(origin.as_ref(), wrong),
+            outwards: far(outwards.as_ref(), wrong),
+        }),
         other => {
-            let span = starts.map_or(0..0, Spanned::span);
+            let span = starts.as_ref().map_or(0..0, Spanned::span);
             wrong(span, format!("`{other}` is not known: expected \"given\", \"none\" or \"board\""));
             Starts::Given
         }
@@ -45,6 +60,15 @@ fn near(radius: Option<&Spanned<f64>>, wrong: &mut impl FnMut(Range<usize>, Stri
         wrong(radius.span(), format!("expected a radius from more than 0 to 100 px, found {near}"));
     }
     near
+}
+
+fn far(outwards: Option<&Spanned<f64>>, wrong: &mut impl FnMut(Range<usize>, String)) -> f64 {
+    let Some(outwards) = outwards else { return 0.0 };
+    let far = *outwards.as_ref();
+    if !(far.abs() <= OUTWARDS) {
+        wrong(outwards.span(), format!("expected px from -{OUTWARDS} to {OUTWARDS}, found {far}"));
+    }
+    far
 }
 
 fn kinds(boards: Option<&Spanned<Vec<String>>>, wrong: &mut impl FnMut(Range<usize>, String)) -> Vec<String> {

@@ -45,6 +45,8 @@ fn every_mistake_in_a_declaration_has_its_place() {
         ("memory = \"1.5 GB\"", "radius = 3.0", "6:10", "`radius` is for starts"),
         ("memory = \"1.5 GB\"", "origin = \"corner\"", "6:10", "`origin` is for starts = \"board\""),
         ("memory = \"1.5 GB\"", "starts = \"board\"\norigin = \"edge\"", "7:10", "expected \"centre\""),
+        ("memory = \"1.5 GB\"", "outwards = 0.5", "6:12", "`outwards` is for starts = \"board\""),
+        ("memory = \"1.5 GB\"", "starts = \"board\"\noutwards = -11.0", "7:12", "expected px from -10 to 10"),
         ("memory = \"1.5 GB\"", "starts = \"board\"\nboards = [\"charucco\"]", "7:10", "`charucco` is no kind of board"),
         ("memory = \"1.5 GB\"", "seconds = 0.0", "6:11", "expected seconds"),
         ("memory = \"1.5 GB\"", "mode = \"files\"", "6:8", "mode `files` is not known"),

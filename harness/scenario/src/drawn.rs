@@ -56,7 +56,7 @@ mod tests {
         Drawn::of(&root, sweep.as_ref())
     }
 
-    const TEXT: &str = "why = \"a\"\nseed = 7\ntrials = 3\n[camera]\nc = 5\n[testfield]\nkind = \"wall\"\n[[station]]\nname = \"x\"\n\
+    const TEXT: &str = "why = \"a\"\nseed = 7\ntrials = 3\n[camera]\nc = 5\n[testfield]\nkind = \"wall\"\n[stations]\nkind = \"arc\"\n[[station]]\nname = \"x\"\n\
         [optics]\nblur = 0.7\n[sensor]\ngrey_noise = 0.01\n[pointing]\nsigma = 0.7\n[[method]]\nname = \"pixel\"\n";
 
     #[test]
@@ -82,11 +82,17 @@ mod tests {
     #[test]
     fn what_is_pictured_changes_all_draws_and_the_field_those_within_it() {
         let one = drawn(TEXT);
-        for (old, new, within) in [("c = 5", "c = 6", false), ("\"x\"", "\"y\"", false), ("kind = \"wall\"", "kind = \"board\"", true)] {
+        for (old, new, within) in [
+            ("c = 5", "c = 6", false),
+            ("\"x\"", "\"y\"", false),
+            ("\"arc\"", "\"random\"", false),
+            ("kind = \"wall\"", "kind = \"board\"", true),
+        ] {
             let other = drawn(&TEXT.replacen(old, new, 1));
             assert!(other.all != one.all && (other.field != one.field) == within, "{old} {new}");
         }
-        assert_ne!(drawn("[scene]\nname = \"a\"").all, drawn("[figure]\nname = \"a\"").all);
+        let alone = ["scene", "figure", "photographs"].map(|table| drawn(&format!("[{table}]\nname = \"a\"")).all);
+        assert!(alone[0] != alone[1] && alone[1] != alone[2] && alone.iter().all(|one| *one != drawn("").all), "{alone:?}");
     }
 
     #[test]

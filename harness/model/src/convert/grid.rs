@@ -74,7 +74,7 @@ pub(super) struct Sight {
 /// The share of a cell for which a place of a grid from the first pixel to the last stands in a mean over the area (trapezoidal rule): half of one at a border, a quarter in a
 /// corner.
 pub fn cell_share(size: ImageSize, at: PixelPoint) -> f64 {
-    let along = |value: f64, length: u32| if value <= 0.0 || value >= f64::from(length) - 1.0 { 0.5 } else { 1.0 };
+    let along = |value: f64, length: u32| if value <= 0.0 || value >= f64::from(length.max(2) - 1) { 0.5 } else { 1.0 };
     along(at.x, size.width) * along(at.y, size.height)
 }
 

@@ -6,7 +6,7 @@ use calibench_measure::{BoardFinder, BoardPointFound, Settings, Sought};
 use calibench_model::boards::{Board, Charuco, Dictionary as Codes};
 use calibench_model::{Image, PixelPoint, Rejection};
 use opencv::aruco::{
-    CORNER_REFINE_APRILTAG, CharucoBoard, DetectorParameters, Dictionary, detect_markers, get_predefined_dictionary_i32,
+    CORNER_REFINE_APRILTAG, CORNER_REFINE_CONTOUR, CORNER_REFINE_NONE, CharucoBoard, DetectorParameters, Dictionary, detect_markers, get_predefined_dictionary_i32,
     interpolate_corners_charuco_def,
 };
 use opencv::core::{Mat, Point2f, Ptr, Vector};
@@ -44,6 +44,10 @@ const DICTIONARIES: [&str; 21] = [
 /// Where ChArUco corners of 4.6 to 4.13 and AprilTag's refinement have the centre of the first pixel, px: at its corner they have theirs.
 /// Source: opencv/opencv_contrib#3024, opencv/opencv#28380.
 const HALF: [f64; 2] = [0.5; 2];
+
+/// How far the corners of tags are displaced where no refinement mends it, px: two pixels inwards along each edge, since the squares between tags touch their
+/// corners; a little less by the contour. Alike from 4.6 to 5.0 and for tags of all sizes. Source: findings/opencv-aprilgrid-corners.sh.
+const INWARDS: [f64; 2] = [-2.0 * std::f64::consts::SQRT_2, -2.14];
 
 fn place_of(dictionary: &Codes) -> Option<i32> {
     DICTIONARIES.iter().position(|name| name.eq_ignore_ascii_case(dictionary.name)).map(|place| place as i32)
@@ -185,12 +189,28 @@ impl BoardFinder for TagCorners {
         if self.corrected { [0.0; 2] } else { self.known() }
     }
 
+    fn outwards(&self, _: &Board) -> f64 {
+        match self.refinement {
+            CORNER_REFINE_NONE => INWARDS[0],
+            CORNER_REFINE_CONTOUR => INWARDS[1],
+            _ => 0.0,
+        }
+    }
+
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {
         self.corners(image, sought).ok().filter(|found| !found.is_empty()).ok_or(Rejection::NotDetected)
     }
 
     fn notes(&self) -> Vec<String> {
-        let note = "its refinement `apriltag` has corners half a pixel to the right and below; `corrected = 1` takes that out".to_owned();
-        (self.refinement == CORNER_REFINE_APRILTAG && !self.corrected).then_some(note).into_iter().collect()
+        let note = match self.refinement {
+            CORNER_REFINE_NONE | CORNER_REFINE_CONTOUR => {
+                "it sees the tags of a grid 2 px too small along each edge; `refinement = 1` does not".to_owned()
+            }
+            CORNER_REFINE_APRILTAG if !self.corrected => {
+                "its refinement `apriltag` has corners half a pixel to the right and below; `corrected = 1` takes that out".to_owned()
+            }
+            _ => return Vec::new(),
+        };
+        vec![note]
     }
 }

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod boards;
+mod drawn;
 mod kinds;
 mod network;
 mod recordings;
@@ -179,27 +180,6 @@ fn the_seed_makes_the_noise() {
     assert!((rms / 0.4 - 1.0).abs() < 3.0 / (2.0_f64 * 96.0).sqrt(), "{rms}");
     assert!(a[1].points.is_empty(), "points of later trials are not kept");
     assert_eq!(a[1].calibrations.len(), 2 * 2, "two methods, two sets");
-}
-
-#[test]
-fn another_name_draws_the_same_and_another_picture_nothing_that_has_to_do_with_it() {
-    let under = |name: &str, text: &str| trials(&parse(name, "f.toml", text, &Registry::builtin()).unwrap(), 3);
-    let own = under(NAME, SCENARIO);
-    let words = SCENARIO.replace("A wall.", "Other words.").replace("whole_pixels", "# no mouse\nwhole_pixels");
-    assert_eq!(own, under("another/name", &words));
-    let hand = |trials: &[Trial]| {
-        let points = trials[0].points.iter().filter(|point| point.method == 0);
-        points.map(|point| error(&point.outcome)).flat_map(|(x, y)| [x, y]).collect::<Vec<_>>()
-    };
-    let correlation = |a: &[f64], b: &[f64]| {
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        product(a, b) / (product(a, a) * product(b, b)).sqrt()
-    };
-    let wider = hand(&under(NAME, &SCENARIO.replace("[1000, 801]", "[1002, 801]")));
-    let steadier = hand(&under(NAME, &SCENARIO.replace("sigma = 0.4\nwhole", "sigma = 0.2\nwhole")));
-    // 96 coordinates that are independent: four standard deviations. A steadier hand is drawn alike.
-    assert!(correlation(&hand(&own), &wider).abs() < 4.0 / 96.0_f64.sqrt());
-    assert!((correlation(&hand(&own), &steadier) - 1.0).abs() < 1e-6);
 }
 
 #[test]

@@ -93,7 +93,7 @@ impl FieldPlan {
             Generator::Board(sheet) => vec![("errors of the print", sheet.print_noise > 0.0)],
             Generator::Wall(wall, panels) => vec![
                 ("the relief of the wall", panels.as_ref().is_some_and(|panels| panels.relief > 0.0 || panels.tilt > 0.0)),
-                ("the places of its targets", wall.fill.as_ref().is_some_and(Fill::is_random)),
+                ("the layout of its targets", wall.fill.as_ref().is_some_and(Fill::is_random)),
                 ("errors of the survey", wall.survey_sigma > 0.0),
             ],
             Generator::Coded(_) => vec![("the layout of the field", true)],

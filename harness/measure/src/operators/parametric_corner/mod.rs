@@ -62,9 +62,10 @@ const DOUBT: f64 = 0.05;
 /// level, and widens the bound most (four).
 ///
 /// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
-/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
-/// opposite than unlike, there is no crossing; nor where half the contrast does not stand out of the residuals. Where residuals are no noise, since something else is in the window, smaller windows are tried, down to 9 px, and
-/// then the point is rejected. Covariance (px^2):
+/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these
+/// are less like those opposite than unlike, there is no crossing; nor where half the contrast does not stand out of the residuals, or is less
+/// than two steps of the grey values. Where residuals are no noise, since something else is in the window, smaller windows are tried, down to
+/// 9 px, and then the point is rejected. Covariance (px^2):
 /// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
 /// Source: two blurred edges with unknown gain and offset fitted by least squares as in Wöhler 2013 (3D Computer Vision, Eq. 1.89 to 1.92) and Yang et al. 2018;
