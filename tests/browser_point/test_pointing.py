@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 import pytest
-from browsing import FAINT, NARROW, WIDE
+from browsing import FAINT, NARROW, WATCH, WIDE
 from pointing import ABOUT, COPY, HEIGHT, TRUTH, WIDTH, apart, cell_name
 from selenium.webdriver.common.by import By
 
@@ -169,6 +169,36 @@ def test_names_are_proposed_in_order_and_are_free(file):
     assert offered == names[2:]
     page.press("delete")
     assert page.next_name() == "my own 7"
+
+
+def test_two_tabs_of_a_file_lose_no_point(free):
+    page = free
+    first = page.driver.current_window_handle
+    page.type_name("of the first")
+    page.point(450, 640)
+    page.wait("return localStorage.length === 1")
+    page.driver.switch_to.new_window("tab")
+    try:
+        page.cdp("Page.addScriptToEvaluateOnNewDocument", source=WATCH)
+        page.open()
+        assert [name for _, name in page.places()] == ["of the first"]
+        second = page.driver.current_window_handle
+        page.type_name("of the second")
+        page.point(600, 600)
+        page.wait("return JSON.parse(Object.values(localStorage)[0]).points.flat().length === 2")
+        page.driver.switch_to.window(first)
+        page.wait("return all('.points tbody tr').length === 2")
+        # What is deleted in one tab does not come back from the other.
+        page.press("delete")
+        page.type_name("of the first again")
+        page.point(500, 500)
+        page.driver.switch_to.window(second)
+        page.wait("return all('.points tbody tr').length === 2")
+        page.wait("return JSON.parse(Object.values(localStorage)[0]).points.flat().some(([name]) => name === 'of the first again')")
+        assert {name for _, name in page.places()} == {"of the second", "of the first again"}
+        page.driver.close()
+    finally:
+        page.driver.switch_to.window(first)
 
 
 def test_what_is_saved_is_measured(file):

@@ -21,6 +21,19 @@ pub struct AsRead {
 }
 
 impl AsRead {
+    /// That there are no photographs to read so.
+    ///
+    /// # Errors
+    /// Options of photographs that are given all the same.
+    pub fn without_photographs(&self) -> Result<(), Failure> {
+        let given = [("--ignore-orientation", self.ignore_orientation), ("--bits", self.bits.is_some())];
+        let given: Vec<&str> = given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect();
+        if given.is_empty() {
+            return Ok(());
+        }
+        Err(Failure::input(format!("{}: for photographs, and --points has none; leave it out", given.join(", "))))
+    }
+
     /// What reads photographs of any cameras; says on standard error how.
     pub fn reader(&self, photos: &[PathBuf]) -> Result<Reader, Failure> {
         self.asked(photos, Asked::default())

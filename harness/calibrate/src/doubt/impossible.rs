@@ -8,6 +8,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Fold, ImageSize, Ray, fold, implausible};
 
 use crate::Calibration;
+use crate::suspect::frame::cropped;
 
 /// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
@@ -28,7 +29,7 @@ pub(super) fn found(calibration: &Calibration<'_>) -> (Vec<String>, Vec<String>)
             let to = if angle < CIRCLE.to_radians() { &mut found } else { &mut rims };
             to.push(folded(fold, angle, &calibration.of(camera)));
         }
-        found.extend(of_no_lens(calibration, camera));
+        found.extend(of_no_lens(calibration, camera).chain(of_a_crop(calibration, camera)));
     }
     (found, rims)
 }
@@ -59,6 +60,15 @@ fn folded(fold: Fold, angle: f64, of: &str) -> String {
 fn of_no_lens(calibration: &Calibration<'_>, camera: usize) -> impl Iterator<Item = String> {
     let of = calibration.of(camera);
     implausible(calibration.camera(camera)).into_iter().map(move |fault| format!("the camera{of}: {fault}"))
+}
+
+/// A principal point in the middle of what the points fill, and not of the frame.
+fn of_a_crop(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+    let times = cropped(calibration, camera)?;
+    Some(format!(
+        "the principal point{} lies in the middle of {times:.2} times the frame, which the image points fill: is the size of the images right (--size)?",
+        calibration.of(camera)
+    ))
 }
 
 /// Image points in use outside the frame: of another size, or swapped coordinates.

@@ -6,7 +6,7 @@ use calibench_exchange::{ControlRow, Points};
 use calibench_model::PixelPoint;
 
 use super::raster::Raster;
-use super::shape;
+use super::{scale, shape};
 use crate::{BoardShape, Calibration, Optics, Settings, model};
 
 /// Other inputs in place of those given.
@@ -52,9 +52,12 @@ pub(super) fn all<'a>(
             all.extend(shapes.map(|(kind, what, other)| Alternative { control: Cow::Owned(other), ..given(kind, what) }));
         }
         // A plane that is mirrored in the image is the same plane from behind.
-        None => all.extend(
-            mirrored(points, &settings).map(|(kind, what, other)| Alternative { points: Cow::Owned(other), ..given(kind, what.into()) }),
-        ),
+        None => {
+            let mirrored = mirrored(points, &settings);
+            all.extend(mirrored.map(|(kind, what, other)| Alternative { points: Cow::Owned(other), ..given(kind, what.into()) }));
+            let scaled = found.and_then(|found| scale::other(control, &found.prepared.settings, points));
+            all.extend(scaled.map(|(what, other)| Alternative { control: Cow::Owned(other), ..given("scale", what) }));
+        }
     }
     all
 }

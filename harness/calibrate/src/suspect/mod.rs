@@ -1,8 +1,9 @@
 //! Inputs that are something else than they say: what they may be in truth is tried, one after the other, and what explains the points is named.
 
 mod alternatives;
-mod frame;
+pub(crate) mod frame;
 mod raster;
+mod scale;
 mod shape;
 
 use calibench_diagnostics::plain;
@@ -26,7 +27,7 @@ pub const MOST_TRIED: usize = 100_000;
 /// What an input may be in truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suspected {
-    /// A word for programs: `lens`, `raster`, `axes`, `up`, `spacing`, `stretch` or `size`.
+    /// A word for programs: `lens`, `raster`, `axes`, `up`, `origin`, `spacing`, `stretch`, `scale` or `size`.
     pub kind: &'static str,
     /// What it may be, with its estimate where it has one, and what to do.
     pub what: String,

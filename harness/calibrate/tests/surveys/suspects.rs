@@ -35,6 +35,18 @@ fn moved(points: &Points, to: impl Fn(PixelPoint) -> PixelPoint) -> Points {
     moved
 }
 
+fn renamed(points: &Points, to: impl Fn(&str) -> String) -> Points {
+    let mut renamed = Points::with_capacity(points.len());
+    points.rows().enumerate().for_each(|(row, point)| renamed.push(point.image, &to(point.target), points.start(row)));
+    renamed
+}
+
+/// A board that fills the frame and more.
+fn full_frame() -> Scene {
+    let targets = (0..187).map(|i| Point3::new(30.0 * f64::from(i % 17) - 120.0, 30.0 * f64::from(i / 17) - 60.0, 0.0)).collect();
+    Scene { targets, control: 187, ..board(lens()) }
+}
+
 /// In how many of the draws that kind is named first.
 fn named(kind: &str, planted: impl Fn(u64) -> (Points, Vec<ControlRow>, Settings) + Sync) {
     let found: Vec<Vec<Suspected>> = (0..DRAWS)
@@ -127,6 +139,72 @@ fn images_of_another_size_are_named() {
             (scene.points(), scene.known(), Settings::new(vec![optics]))
         });
     }
+}
+
+#[test]
+fn a_crop_and_pixels_counted_from_elsewhere_are_named_where_the_frame_tells() {
+    let cropped = |seed: u64, stated: ImageSize| {
+        let mut optics = optics("opencv5");
+        optics.size = stated;
+        (noisy(full_frame(), seed), Settings::new(vec![optics]))
+    };
+    named("size", |seed| {
+        let (scene, settings) = cropped(seed, ImageSize { width: 2000, height: 1500 });
+        (scene.points(), scene.known(), settings)
+    });
+    let (scene, larger) = cropped(1, ImageSize { width: 2000, height: 1500 });
+    let found = suspects(&scene.points(), &scene.known(), &larger);
+    assert!(found[0].what.contains("of about 16") && found[0].what.contains("2000 x 1500 px is stated"), "{found:?}");
+    // Points between 0 and the width are those of the outer corner, points between a half and a half more those from 1.
+    let targets = (0..1536).map(|i| Point3::new(10.0 * f64::from(i % 48) - 110.0, 10.0 * f64::from(i / 48) - 60.0, 0.0)).collect();
+    let dense = Scene { targets, control: 1536, ..full_frame() };
+    let mut optics = optics("opencv5");
+    optics.size = ImageSize { width: SIZE.width - 1, height: SIZE.height - 1 };
+    for (by, word) in [(0.0, "--origin corner"), (0.5, "subtract 1")] {
+        let points = moved(&dense.points(), |at| PixelPoint::new(at.x + by, at.y + by));
+        let found = suspects(&points, &dense.known(), &Settings::new(vec![optics.clone()]));
+        assert!(found.len() == 1 && found[0].kind == "origin" && found[0].what.contains(word), "{by}: {found:?}");
+    }
+}
+
+#[test]
+fn x_and_y_of_a_board_that_are_exchanged_are_named_by_the_principal_point() {
+    named("axes", |seed| {
+        let scene = noisy(board(lens()), seed);
+        (moved(&scene.points(), |at| PixelPoint::new(at.y, at.x)), scene.known(), settings("opencv5"))
+    });
+}
+
+#[test]
+fn a_board_of_another_scale_than_the_control_around_it_is_named() {
+    let named_rows = |scene: &Scene, side: f64| {
+        let row = |(k, row): (usize, ControlRow)| {
+            if k < 48 {
+                return row;
+            }
+            let k = k - 48;
+            let at = [600.0 + side * (k % 6) as f64, 700.0 + side * (k / 6) as f64, 250.0];
+            ControlRow { target: format!("r{}c{}", k / 6 + 1, k % 6 + 1), position: at, ..row }
+        };
+        scene.known().into_iter().enumerate().map(row).collect::<Vec<_>>()
+    };
+    let scene = |seed: u64| {
+        let wall = wall(lens());
+        let board = (0..24).map(|k| Point3::new(600.0 + 97.0 * f64::from(k % 6), 700.0 + 97.0 * f64::from(k / 6), 250.0));
+        let targets = wall.targets.iter().copied().chain(board).collect();
+        noisy(Scene { targets, control: 72, ..wall }, seed)
+    };
+    let points = |seed: u64| {
+        let named = |name: &str| {
+            let k: usize = name[1..].parse().unwrap();
+            if k < 48 { name.to_owned() } else { format!("r{}c{}", (k - 48) / 6 + 1, (k - 48) % 6 + 1) }
+        };
+        renamed(&scene(seed).points(), named)
+    };
+    named("scale", |seed| (points(seed), named_rows(&scene(seed), 100.0), settings("opencv5")));
+    let found = suspects(&points(3), &named_rows(&scene(3), 100.0), &settings("opencv5"));
+    assert!(found[0].what.contains("0.970 times as large") && found[0].what.contains("97.0 from one corner"), "{found:?}");
+    assert!(suspects(&points(3), &named_rows(&scene(3), 97.0), &settings("opencv5")).is_empty());
 }
 
 #[test]

@@ -166,6 +166,7 @@ impl Calibrate {
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
         match (&self.points, &self.control, self.board.or(self.chessboard.map(Board::from))) {
             (Some(points), Some(control), _) => {
+                self.read.without_photographs()?;
                 let PointFile { mut points, lost } = inputs::measured(points)?;
                 if let Some(Origin::Corner) = self.origin {
                     points.move_each(|at| CornerPoint { x: at.x, y: at.y }.to_pixel());

@@ -158,6 +158,9 @@ impl Judge {
 
     /// The corners to judge by, measured here or read, and what is in doubt of where a board was found.
     fn material(&self, context: &Context<'_>) -> Result<(Material, Vec<String>, Reading), Failure> {
+        if self.size.is_some() {
+            self.read.without_photographs()?;
+        }
         let read = |field, size| Ok((files::material(&self.points, field, size)?, Vec::new(), Reading::default()));
         match (self.size, &self.control, self.pictured()) {
             (Some(size), Some(control), _) => read(Field::Points(read_control(control)?), size),

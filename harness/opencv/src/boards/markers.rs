@@ -47,7 +47,7 @@ const HALF: [f64; 2] = [0.5; 2];
 
 /// How far the corners of tags are displaced where no refinement mends it, px: two pixels inwards along each edge, since the squares between tags touch their
 /// corners; a little less by the contour. Alike from 4.6 to 5.0 and for tags of all sizes. Source: findings/opencv-aprilgrid-corners.sh.
-const INWARDS: [f64; 2] = [-2.0 * std::f64::consts::SQRT_2, -2.14];
+const INWARDS: [f64; 2] = [-2.65, -2.14];
 
 fn place_of(dictionary: &Codes) -> Option<i32> {
     DICTIONARIES.iter().position(|name| name.eq_ignore_ascii_case(dictionary.name)).map(|place| place as i32)
