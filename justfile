@@ -128,6 +128,10 @@ deny:
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns --bench bounds
 
+# How often sound calibrations are doubted, and planted mistakes named: COUNT draws of each sound kind, a tenth of that of each mistake
+doubts COUNT="1000":
+    cargo bench --quiet --workspace --bench doubts -- {{COUNT}}
+
 # What the tests open pages in (`./bootstrap browser` installs it)
 browser:
     @chromium --version

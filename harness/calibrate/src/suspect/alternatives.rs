@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use calibench_exchange::{ControlRow, Points};
 use calibench_model::PixelPoint;
 
+use super::LENS;
 use super::raster::Raster;
 use super::{scale, shape};
 use crate::{BoardShape, Calibration, Optics, Settings, model};
@@ -37,7 +38,7 @@ pub(super) fn all<'a>(
     let mut all = Vec::new();
     if settings.cameras.iter().any(|optics| !model::is_wide(optics)) {
         let what = "the lens pictures angles, as a fisheye does, and the model is that of a pinhole: --model opencv-fisheye";
-        all.push(Alternative { settings: fisheyes(&settings), ..given("lens", what.into()) });
+        all.push(Alternative { settings: with_model(&settings, "opencv-fisheye"), ..given(LENS, what.into()) });
     }
     match Raster::of(control) {
         Some(raster) => {
@@ -62,16 +63,26 @@ pub(super) fn all<'a>(
     all
 }
 
-/// The same cameras as fisheyes; what was said of parameters of another model does not count.
-fn fisheyes(settings: &Settings) -> Settings {
-    let fisheye = |optics: &Optics| {
+/// The same with a pinhole of more parameters, where the model has fewer.
+pub(super) fn richer<'a>(points: &'a Points, control: &'a [ControlRow], settings: &Settings) -> Option<Alternative<'a>> {
+    let poor = |optics: &Optics| optics.solve.is_some() || !model::name(optics).starts_with("opencv");
+    if !settings.cameras.iter().any(poor) {
+        return None;
+    }
+    let settings = Settings { snoop: false, shape: BoardShape::Flat, ..with_model(settings, "opencv5") };
+    Some(Alternative { kind: "", what: String::new(), points: Cow::Borrowed(points), control: Cow::Borrowed(control), settings })
+}
+
+/// The same cameras with another model where they are pinholes; what was said of parameters of another model does not count.
+fn with_model(settings: &Settings, model: &str) -> Settings {
+    let other = |optics: &Optics| {
         if model::is_wide(optics) {
             optics.clone()
         } else {
-            Optics { model: Some("opencv-fisheye".into()), solve: None, priors: Vec::new(), start: None, ..optics.clone() }
+            Optics { model: Some(model.into()), solve: None, priors: Vec::new(), start: None, ..optics.clone() }
         }
     };
-    Settings { cameras: settings.cameras.iter().map(fisheye).collect(), ..settings.clone() }
+    Settings { cameras: settings.cameras.iter().map(other).collect(), ..settings.clone() }
 }
 
 /// The points as they are if x and y are exchanged, or y counts upwards.

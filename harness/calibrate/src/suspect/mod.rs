@@ -21,6 +21,8 @@ const EXPLAINS: f64 = 0.5;
 const MOST_PX: f64 = 2.0;
 /// Others whose residuals are so many times those of the best explain as well.
 const AS_WELL: f64 = 1.5;
+/// The word of a lens that is a fisheye's.
+const LENS: &str = "lens";
 /// Image points up to which anything is tried.
 pub const MOST_TRIED: usize = 100_000;
 
@@ -58,6 +60,13 @@ pub fn suspected(
     let bound = found.map_or(MOST_PX, |calibration| EXPLAINS * calibration.rms_px());
     let mut explained: Vec<Explained> =
         alternatives::all(points, control, settings, found.ok()).into_iter().filter_map(|other| other.tried(bound)).collect();
+    // A pinhole that may do all that it can is no fisheye.
+    if let Some(lens) = explained.iter().find(|other| other.suspected.kind == LENS) {
+        let bound = AS_WELL * lens.rms_px;
+        if alternatives::richer(points, control, settings).and_then(|other| other.tried(bound)).is_some() {
+            explained.retain(|other| other.suspected.kind != LENS);
+        }
+    }
     let most = AS_WELL * explained.iter().map(|other| other.rms_px).fold(f64::INFINITY, f64::min);
     explained.retain(|other| other.rms_px <= most);
     // Of what explains as well, what lies in the image and has its axis near the middle: a mirror image may be turned by a right angle.

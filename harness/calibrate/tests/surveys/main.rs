@@ -6,6 +6,7 @@ mod network;
 mod next;
 mod orientations;
 mod pairs;
+mod planted;
 mod points;
 mod resampled;
 mod shapes;

@@ -45,9 +45,9 @@ const DICTIONARIES: [&str; 21] = [
 /// Source: opencv/opencv_contrib#3024, opencv/opencv#28380.
 const HALF: [f64; 2] = [0.5; 2];
 
-/// How far the corners of tags are displaced where no refinement mends it, px: two pixels inwards along each edge, since the squares between tags touch their
+/// How far the corners of tags of a board seen somewhat from aside are displaced where no refinement mends it, px: some two pixels inwards along each edge, since the squares between tags touch their
 /// corners; a little less by the contour. Alike from 4.6 to 5.0 and for tags of all sizes. Source: findings/opencv-aprilgrid-corners.sh.
-const INWARDS: [f64; 2] = [-2.65, -2.14];
+const INWARDS: [f64; 2] = [-2.65, -1.99];
 
 fn place_of(dictionary: &Codes) -> Option<i32> {
     DICTIONARIES.iter().position(|name| name.eq_ignore_ascii_case(dictionary.name)).map(|place| place as i32)
