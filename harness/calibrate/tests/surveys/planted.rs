@@ -24,7 +24,7 @@ pub const SOUND: [Kind; 12] = [
         whole(&noisy(board(lens()), seed), Settings { shape: BoardShape::Tested, ..settings("opencv5") })
     }),
     ("board, photogrammetric", |seed| whole(&noisy(board(square()), seed), settings("photogrammetric"))),
-    ("board, Metashape's model", |seed| whole(&noisy(board(lens()), seed), settings("metashape"))),
+    ("board, Metashape's model", |seed| whole(&noisy(board(square()), seed), settings("metashape"))),
     ("board, gross errors sought", |seed| whole(&noisy(board(lens()), seed), Settings { snoop: true, ..settings("opencv5") })),
     ("board beyond the frame", |seed| whole(&noisy(full_frame(), seed), settings("opencv5"))),
     ("tags", |seed| whole(&of_tags(18.0, seed), settings("opencv5"))),
