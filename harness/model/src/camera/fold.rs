@@ -16,9 +16,12 @@ pub struct Fold {
 }
 
 /// The fold of `camera` inside its frame (the outer corners of the pixels), if it has one. A camera with a fold cannot give truth for the full frame.
-///
-/// The radius is that of the nearest of 1440 directions, each located to the last bits.
 pub fn fold(camera: &dyn CameraModel) -> Option<Fold> {
+    fold_radius(camera).map(|radius_px| Fold { radius_px, share: without_ray(camera) })
+}
+
+/// [`Fold::radius_px`] alone, at a small part of the cost: that of the nearest of 1440 directions, each located to the last bits.
+pub fn fold_radius(camera: &dyn CameraModel) -> Option<f64> {
     if camera.has_surely_no_fold() {
         return None;
     }
@@ -27,8 +30,7 @@ pub fn fold(camera: &dyn CameraModel) -> Option<Fold> {
     let angles = (0..DIRECTIONS).map(|i| std::f64::consts::TAU * i as f64 / DIRECTIONS as f64);
     let to_corners = corners(camera.size()).map(|corner| (corner.y - centre.y).atan2(corner.x - centre.x));
     let edge = angles.chain(to_corners).filter_map(|angle| camera.fold_towards(angle)).filter(inside);
-    let radius_px = edge.map(|point| point.distance(centre)).min_by(f64::total_cmp)?;
-    Some(Fold { radius_px, share: without_ray(camera) })
+    edge.map(|point| point.distance(centre)).min_by(f64::total_cmp)
 }
 
 /// The outer corners of a frame.

@@ -48,7 +48,7 @@ pub use dispatch::{Camera, conventions};
 pub use double_sphere::DoubleSphere;
 pub use ebner::Ebner;
 pub use eucm::Eucm;
-pub use fold::{Fold, fold};
+pub use fold::{Fold, fold, fold_radius};
 pub use fov::Fov;
 pub use micmac::MicMac;
 pub use moniwa::Moniwa;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ConvertError;
 use crate::PixelPoint;
-use crate::camera::{CameraModel, ImageSize, NoCounterpart, Ray, fold};
+use crate::camera::{CameraModel, ImageSize, NoCounterpart, Ray, fold_radius, without_ray};
 
 /// A part of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,7 +24,7 @@ impl Region {
 
     /// Where `camera` may be taken as true: the frame, or what lies within [`Self::INSIDE_FOLD`] of the radius of its fold.
     pub fn inside_fold(camera: &dyn CameraModel) -> Self {
-        fold(camera).map_or(Self::Frame, |fold| Self::Radius { px: fold.radius_px * Self::INSIDE_FOLD })
+        fold_radius(camera).map_or(Self::Frame, |px| Self::Radius { px: px * Self::INSIDE_FOLD })
     }
 }
 
@@ -114,14 +114,15 @@ pub(super) fn axis(camera: &dyn CameraModel) -> Result<PixelPoint, NoCounterpart
 /// # Errors
 /// A camera that folds over inside the region, a region without enough nodes.
 pub(super) fn sights(camera: &dyn CameraModel, region: Region, columns: usize) -> Result<Vec<Sight>, ConvertError> {
-    let fold = fold(camera);
-    if let (Region::Frame, Some(fold)) = (region, fold) {
-        return Err(ConvertError::Fold { radius_px: fold.radius_px, share: fold.share });
+    let fold = fold_radius(camera);
+    let folded = |radius_px| ConvertError::Fold { radius_px, share: without_ray(camera) };
+    if let (Region::Frame, Some(radius_px)) = (region, fold) {
+        return Err(folded(radius_px));
     }
     let nodes = nodes_in(camera, region, columns)?;
     let sight = |node: Node| camera.unproject(node.point).map(|ray| Sight { node, ray });
     let mut sights: Vec<Sight> = nodes.into_iter().map(sight).collect::<Result<_, _>>().map_err(|why| match fold {
-        Some(fold) => ConvertError::Fold { radius_px: fold.radius_px, share: fold.share },
+        Some(radius_px) => folded(radius_px),
         None => why.into(),
     })?;
     normalise(&mut sights);

@@ -1,7 +1,7 @@
 //! A camera, and a camera file, as JSON.
 
 use calibench_exchange::camera::{CameraFile, NamedCamera, ParameterCovariance, PoseFrame};
-use calibench_model::camera::{CameraModel, CameraParameter, Convention, Verification, fold, without_ray};
+use calibench_model::camera::{CameraModel, CameraParameter, Convention, Verification, fold_radius, without_ray};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -207,7 +207,7 @@ impl Frame {
             view_diagonal_deg,
             distortion_px: corners(camera).map(|corners| corners.map(moved)),
             without_ray: without_ray(camera),
-            fold_px: fold(camera).map(|fold| fold.radius_px),
+            fold_px: fold_radius(camera),
             doubt: named.doubt(),
         }
     }
