@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# OpenCV's detectMarkers has the corners of a Kalibr grid's tags two pixels inside, along each edge, whatever the size of the tag, and says nothing: the small squares
+# OpenCV's detectMarkers has the corners of a Kalibr grid's tags two pixels inside in x and two in y, whatever the size of the tag, and says nothing: the small squares
 # that touch the corners make the outline that it follows the inner one. CORNER_REFINE_SUBPIX mends it up to 4.8; since 4.9 its window is at most 0.3 of a bit of the
 # tag, for tags of 40 and 80 px too small to reach the corner, and they are returned unrefined; 120 px are refined. (`relativeCornerRefmentWinSize`.)
-# A tag that stands alone is half a pixel too small along each edge. CORNER_REFINE_CONTOUR mends neither.
+# Corners of a tag that stands alone lie half a pixel inside in x and in y. CORNER_REFINE_CONTOUR mends neither.
 # Seen: opencv-contrib-python-headless 4.6.0.66, 4.8.0.76, 4.9.0.80 and 5.0.0.93 (Linux, CPython 3.11). Displacement along the tag's diagonals, px, median of nine tags:
 #   4.8.0   grid 40 px: none -2.83, subpix -0.00, contour -2.15, apriltag -0.01     alone 40 px: none -0.71
 #   4.9.0   grid 40 px: none -2.83, subpix -2.83, contour -2.15, apriltag -0.01     alone 40 px: none -0.71

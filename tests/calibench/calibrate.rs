@@ -346,6 +346,8 @@ fn bad_input_is_named() {
         (with(&["--datum", "loose"]), "`loose` is no datum"),
         (with(&["--datum", "minimal:0-0,0-1,0-0,0-1,9-9"]), "the datum names 9-9, which is no measured control point"),
         (with(&["--huber", "0"]), "expected a positive number"),
+        (with(&["--bits", "12", "--ignore-orientation"]), "--ignore-orientation, --bits: for photographs, and --points has none"),
+        (vec!["judge", "--board", "9x6:25", "--size", "640x480", "--points", "a=p.csv", "--bits", "12"], "--bits: for photographs"),
         (with(&["--to", "opencv5"]), "--output"),
         (with(&["--start", "c.csv"]), "no camera file that is known"),
         (vec!["calibrate", "--points", "p.csv"], "--control"),

@@ -7,7 +7,7 @@ mod network;
 #[path = "../tests/surveys/planted.rs"]
 mod planted;
 
-use planted::{MISTAKEN, SOUND, asked, suspects};
+use planted::{MISTAKEN, SOUND, examined, suspects};
 use rayon::prelude::*;
 
 /// Draws of each sound kind, and of each mistake.
@@ -19,8 +19,8 @@ fn main() {
     let [sound, mistaken] = asked_for.map_or(DRAWS, |count| [count, count.div_ceil(10)]);
     println!("| sound: {sound} draws of each | refused | doubted | suspected |\n|---|--:|--:|--:|");
     for (what, draw) in SOUND {
-        let of_seed = |seed| match asked(&draw(seed)) {
-            Err((_, suspects)) => [1, 0, usize::from(!suspects.is_empty())],
+        let of_seed = |seed| match examined(&draw(seed)) {
+            Err(_) => [1, 0, 0],
             Ok((doubts, suspects)) => [0, usize::from(doubts > 0), usize::from(!suspects.is_empty())],
         };
         let add = |a: [usize; 3], b: [usize; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

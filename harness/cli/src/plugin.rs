@@ -79,8 +79,10 @@ fn of_boards(configured: &Configured) -> Result<Vec<Finding>, Failure> {
             print(&format!("  note    {board}: {found} of {all} points; in the median off, px: {off}\n"))?;
         }
         let wrong = check_origins(finder, &origins).err().map(|wrong| with_notes(configured, wrong));
-        findings
-            .push(Finding { what: "boards at 16 phases are found, their points in the median where its `origin` and `outwards` say", wrong });
+        findings.push(Finding {
+            what: "boards at 16 phases are found, their points in the median where its `origin` and `outwards` say",
+            wrong,
+        });
     }
     Ok(findings)
 }

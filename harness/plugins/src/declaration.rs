@@ -94,8 +94,8 @@ pub struct Boards {
     pub kinds: Vec<String>,
     /// Whether (0, 0) is the outer corner of the first pixel in its answers.
     pub from_corner: bool,
-    /// How far its points lie away from the middle of their marker, or of the board, px.
-    pub outwards: f64,
+    /// How far its points lie away from the middle of their marker, or of the board, px, by kind; of other kinds not at all.
+    pub outwards: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]
@@ -115,7 +115,7 @@ pub(crate) struct Wire {
     radius: Option<Spanned<f64>>,
     boards: Option<Spanned<Vec<String>>>,
     origin: Option<Spanned<String>>,
-    outwards: Option<Spanned<f64>>,
+    outwards: Option<Spanned<starts::Outwards>>,
     seconds: Option<Spanned<f64>>,
     memory: Option<Spanned<String>>,
 }
@@ -141,7 +141,8 @@ pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Op
     let before = problems.len();
     problems.extend(no_name(&wire.name));
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
-    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, outwards, seconds, memory } = wire;
+    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, outwards, seconds, memory } =
+        wire;
     if command.as_ref().first().is_none_or(String::is_empty) {
         wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
     }

@@ -137,8 +137,8 @@ impl BoardFinder for Asked {
             .then(|| format!("it finds these alone: {}", kinds.join(", ")))
     }
 
-    fn outwards(&self, _: &Board) -> f64 {
-        self.boards().map_or(0.0, |boards| boards.outwards)
+    fn outwards(&self, board: &Board) -> f64 {
+        self.boards().and_then(|boards| boards.outwards.get(board.kind())).copied().unwrap_or(0.0)
     }
 
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {

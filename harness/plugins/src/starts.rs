@@ -1,8 +1,10 @@
 //! What a declaration says of where its program looks.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use calibench_model::boards::KINDS;
+use serde::Deserialize;
 use toml::Spanned;
 
 use crate::declaration::{Boards, Starts};
@@ -13,13 +15,21 @@ const RADIUS: f64 = 5.0;
 /// How far a detector may say that its points lie outwards, px.
 const OUTWARDS: f64 = 10.0;
 
+/// How far points lie outwards, px: of all kinds of board, or of each.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a number of px, or one for each kind, as in { aprilgrid = -2.7 }")]
+pub enum Outwards {
+    All(f64),
+    Each(BTreeMap<String, f64>),
+}
+
 /// The key `starts`, and those that belong to one of its values alone.
 pub struct Wire {
     pub starts: Option<Spanned<String>>,
     pub radius: Option<Spanned<f64>>,
     pub boards: Option<Spanned<Vec<String>>>,
     pub origin: Option<Spanned<String>>,
-    pub outwards: Option<Spanned<f64>>,
+    pub outwards: Option<Spanned<Outwards>>,
 }
 
 /// What they say; mistakes are handed to `wrong`.
@@ -43,7 +53,7 @@ pub fn checked(wire: &Wire, wrong: &mut impl FnMut(Range<usize>, String)) -> Sta
         "board" => Starts::Board(Boards {
             kinds: kinds(boards.as_ref(), wrong),
             from_corner: from_corner(origin.as_ref(), wrong),
-            outwards: far(outwards.as_ref(), wrong),
+            outwards: outwards.as_ref().map_or_else(BTreeMap::new, |outwards| far(outwards, wrong)),
         }),
         other => {
             let span = starts.as_ref().map_or(0..0, Spanned::span);
@@ -62,20 +72,33 @@ fn near(radius: Option<&Spanned<f64>>, wrong: &mut impl FnMut(Range<usize>, Stri
     near
 }
 
-fn far(outwards: Option<&Spanned<f64>>, wrong: &mut impl FnMut(Range<usize>, String)) -> f64 {
-    let Some(outwards) = outwards else { return 0.0 };
-    let far = *outwards.as_ref();
-    if !(far.abs() <= OUTWARDS) {
-        wrong(outwards.span(), format!("expected px from -{OUTWARDS} to {OUTWARDS}, found {far}"));
+fn far(outwards: &Spanned<Outwards>, wrong: &mut impl FnMut(Range<usize>, String)) -> BTreeMap<String, f64> {
+    let known = KINDS.map(|(name, ..)| name);
+    let by_kind = match outwards.as_ref() {
+        Outwards::All(far) => known.map(|kind| (kind.to_owned(), *far)).into(),
+        Outwards::Each(by_kind) => by_kind.clone(),
+    };
+    for (kind, far) in &by_kind {
+        if !known.contains(&kind.as_str()) {
+            wrong(outwards.span(), no_kind(kind));
+        }
+        if far.is_nan() || far.abs() > OUTWARDS {
+            wrong(outwards.span(), format!("expected px from -{OUTWARDS} to {OUTWARDS}, found {far}"));
+            break;
+        }
     }
-    far
+    by_kind
+}
+
+fn no_kind(kind: &str) -> String {
+    format!("`{kind}` is no kind of board: expected some of {}", KINDS.map(|(name, ..)| name).join(", "))
 }
 
 fn kinds(boards: Option<&Spanned<Vec<String>>>, wrong: &mut impl FnMut(Range<usize>, String)) -> Vec<String> {
     let Some(boards) = boards else { return Vec::new() };
     let known = KINDS.map(|(name, ..)| name);
     for kind in boards.as_ref().iter().filter(|kind| !known.contains(&kind.as_str())) {
-        wrong(boards.span(), format!("`{kind}` is no kind of board: expected some of {}", known.join(", ")));
+        wrong(boards.span(), no_kind(kind));
     }
     boards.as_ref().clone()
 }

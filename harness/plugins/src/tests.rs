@@ -32,6 +32,16 @@ fn a_declaration_is_read_with_its_defaults() {
 }
 
 #[test]
+fn how_far_points_lie_outwards_is_stated_for_all_kinds_or_for_each() {
+    for (text, expected) in [("-0.5", [-0.5, -0.5]), ("{ aprilgrid = -2.7 }", [-2.7, 0.0])] {
+        let found = program(&GOOD.replace("memory = \"1.5 GB\"", &format!("starts = \"board\"\noutwards = {text}")));
+        let Starts::Board(boards) = found.starts else { panic!("{text}") };
+        let of = |kind: &str| boards.outwards.get(kind).copied().unwrap_or(0.0);
+        assert_eq!([of("aprilgrid"), of("chessboard")], expected, "{text}");
+    }
+}
+
+#[test]
 fn every_mistake_in_a_declaration_has_its_place() {
     for (old, new, place, expected) in [
         ("name = \"mine\"", "name = \"Mine\"", "3:8", "no name of a method"),
@@ -47,6 +57,8 @@ fn every_mistake_in_a_declaration_has_its_place() {
         ("memory = \"1.5 GB\"", "starts = \"board\"\norigin = \"edge\"", "7:10", "expected \"centre\""),
         ("memory = \"1.5 GB\"", "outwards = 0.5", "6:12", "`outwards` is for starts = \"board\""),
         ("memory = \"1.5 GB\"", "starts = \"board\"\noutwards = -11.0", "7:12", "expected px from -10 to 10"),
+        ("memory = \"1.5 GB\"", "starts = \"board\"\noutwards = { tags = 1 }", "7:12", "`tags` is no kind of board"),
+        ("memory = \"1.5 GB\"", "starts = \"board\"\noutwards = \"far\"", "7:12", "expected a number of px"),
         ("memory = \"1.5 GB\"", "starts = \"board\"\nboards = [\"charucco\"]", "7:10", "`charucco` is no kind of board"),
         ("memory = \"1.5 GB\"", "seconds = 0.0", "6:11", "expected seconds"),
         ("memory = \"1.5 GB\"", "mode = \"files\"", "6:8", "mode `files` is not known"),

@@ -23,6 +23,8 @@ const NORMAL: [f64; 2] = [0.849_321_800_288_019, 1.128_379_167_095_513];
 const STEPS: (usize, f64) = (100, 1e-5);
 /// How far the middle of a sound finder may lie from what it states, px, beyond so many standard errors.
 const FAR: (f64, f64) = (0.05, 3.0);
+/// A standard error from which on a median says nothing, px.
+const VAGUE: f64 = 0.1;
 /// What is held, in the order of [`Origin::median`].
 pub const DIRECTIONS: [&str; 3] = ["in x", "in y", "outwards"];
 
@@ -139,7 +141,10 @@ fn check_origin(finder: &dyn BoardFinder, board: Board, origin: &Origin) -> Resu
     let [x, y] = finder.origin(&board);
     let stated = [x, y, finder.outwards(&board)];
     for (k, direction) in DIRECTIONS.into_iter().enumerate() {
-        if (median[k] - stated[k]).abs() - FAR.1 * error[k] > FAR.0 {
+        if !(error[k] < VAGUE) {
+            return Err(format!("`{board}`: points scatter too much, or lie too much alike, to tell whether they are off {direction}"));
+        }
+        if !((median[k] - stated[k]).abs() - FAR.1 * error[k] <= FAR.0) {
             return Err(format!(
                 "`{board}`: points lie {:+.3} ± {:.3} px off {direction} in the median of 16 phases, where {:+.3} are stated; expected within {} px",
                 median[k], error[k], stated[k], FAR.0

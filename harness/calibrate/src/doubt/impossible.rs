@@ -1,4 +1,4 @@
-//! What cannot be as it is said to be: points outside of their images, cameras that no lens makes, residuals that no operator leaves.
+//! What cannot be as it is said to be: points outside of their images, images of another size, cameras that no lens makes, residuals that no operator leaves.
 
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
@@ -64,9 +64,9 @@ fn of_no_lens(calibration: &Calibration<'_>, camera: usize) -> impl Iterator<Ite
 
 /// A principal point in the middle of what the points fill, and not of the frame.
 fn of_a_crop(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
-    let times = cropped(calibration, camera)?;
+    let [across, down] = cropped(calibration, camera)?;
     Some(format!(
-        "the principal point{} lies in the middle of {times:.2} times the frame, which the image points fill: is the size of the images right (--size)?",
+        "the principal point{} lies in the middle of {across:.2} times the width and {down:.2} times the height of the frame, and the image points fill just that: is the size of the images right (--size)?",
         calibration.of(camera)
     ))
 }

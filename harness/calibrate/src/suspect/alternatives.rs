@@ -63,10 +63,10 @@ pub(super) fn all<'a>(
     all
 }
 
-/// The same with a pinhole of more parameters, where the model has fewer.
+/// The same with OpenCV's pinhole and its five coefficients, all of them unknown, where another pinhole was asked for or some are held.
 pub(super) fn richer<'a>(points: &'a Points, control: &'a [ControlRow], settings: &Settings) -> Option<Alternative<'a>> {
-    let poor = |optics: &Optics| optics.solve.is_some() || !model::name(optics).starts_with("opencv");
-    if !settings.cameras.iter().any(poor) {
+    let is_other = |optics: &Optics| !model::is_wide(optics) && (optics.solve.is_some() || model::name(optics) != "opencv5");
+    if !settings.cameras.iter().any(is_other) {
         return None;
     }
     let settings = Settings { snoop: false, shape: BoardShape::Flat, ..with_model(settings, "opencv5") };

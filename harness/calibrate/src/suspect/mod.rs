@@ -14,6 +14,7 @@ use calibench_model::camera::{CameraModel, Ray};
 use crate::doubt::impossible::is_outside;
 use crate::{Calibration, CalibrationError, Settings, prepare};
 use alternatives::Alternative;
+use raster::Raster;
 
 /// The residuals of what explains an input, as a share of those without it, at most.
 const EXPLAINS: f64 = 0.5;
@@ -56,11 +57,12 @@ pub fn suspected(
     if points.len() > MOST_TRIED {
         return Vec::new();
     }
-    let mut all = found.map_or_else(|_| Vec::new(), frame::suspected);
+    let flat = Raster::of(control).is_some();
+    let mut all = found.map_or_else(|_| Vec::new(), |found| frame::suspected(found, flat));
     let bound = found.map_or(MOST_PX, |calibration| EXPLAINS * calibration.rms_px());
     let mut explained: Vec<Explained> =
         alternatives::all(points, control, settings, found.ok()).into_iter().filter_map(|other| other.tried(bound)).collect();
-    // A pinhole that may do all that it can is no fisheye.
+    // Where a pinhole with five coefficients does as well, the lens is no fisheye.
     if let Some(lens) = explained.iter().find(|other| other.suspected.kind == LENS) {
         let bound = AS_WELL * lens.rms_px;
         if alternatives::richer(points, control, settings).and_then(|other| other.tried(bound)).is_some() {

@@ -12,6 +12,9 @@ use crate::{BoardShape, Settings, prepare};
 /// A share by which the scale must differ from one to be another.
 const OTHER: f64 = 5e-3;
 
+/// Share of the misfit of the board as it is stated, wherever it is, that is left with another scale, at most.
+const EXPLAINS: f64 = 0.5;
+
 /// Whether a control point has the name of a board's corner: `r1c2`, or `t7c0` of a tag.
 fn is_of_board(name: &str) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
@@ -36,10 +39,11 @@ pub(super) fn other(control: &[ControlRow], settings: &Settings, points: &Points
     let to_others = similarity(&there, &stated, true).ok()?;
     let in_place: Vec<Point3<f64>> = board_there.iter().map(|at| to_others.apply(at)).collect();
     let of_board = similarity(&stated_board, &in_place, true).ok()?;
-    if (of_board.scale - 1.0).abs() < OTHER {
+    let as_stated = similarity(&stated_board, &in_place, false).ok()?;
+    if (of_board.scale - 1.0).abs() < OTHER || of_board.rms > EXPLAINS * as_stated.rms {
         return None;
     }
-    let side = stated_board.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(f64::INFINITY, f64::min);
+    let side = stated_board[1..].iter().map(|at| (at - stated_board[0]).norm()).fold(f64::INFINITY, f64::min);
     let what = format!(
         "the board (`{}` and others) is {} times as large beside the other control as is stated: {} from one corner to the next in place of {}",
         board[0].target,

@@ -18,52 +18,86 @@ pub type Kind = (&'static str, fn(u64) -> Input);
 const SIGMA: f64 = 0.1;
 
 /// Inputs that are what they say.
-pub const SOUND: [Kind; 12] = [
+pub const SOUND: [Kind; 16] = [
     ("board", |seed| whole(&noisy(board(lens()), seed), settings("opencv5"))),
-    ("board, tested for a bend", |seed| {
-        whole(&noisy(board(lens()), seed), Settings { shape: BoardShape::Tested, ..settings("opencv5") })
-    }),
+    ("board, tested for a bend", |seed| whole(&noisy(board(lens()), seed), Settings { shape: BoardShape::Tested, ..settings("opencv5") })),
     ("board, photogrammetric", |seed| whole(&noisy(board(square()), seed), settings("photogrammetric"))),
     ("board, Metashape's model", |seed| whole(&noisy(board(square()), seed), settings("metashape"))),
     ("board, gross errors sought", |seed| whole(&noisy(board(lens()), seed), Settings { snoop: true, ..settings("opencv5") })),
     ("board beyond the frame", |seed| whole(&noisy(full_frame(), seed), settings("opencv5"))),
     ("tags", |seed| whole(&of_tags(18.0, seed), settings("opencv5"))),
-    ("fisheye", |seed| whole(&noisy(fisheyed(), seed), settings("opencv-fisheye"))),
+    ("fisheye", |seed| {
+        whole(&noisy(Scene { camera: fisheyed().camera, poses: fisheyed().poses, ..full_frame() }, seed), settings("opencv-fisheye"))
+    }),
     ("wide, double sphere", |seed| whole(&noisy(Scene { camera: double_sphere(), ..fisheyed() }, seed), settings("double-sphere"))),
     ("wall", |seed| whole(&noisy(wall(lens()), seed), settings("opencv5"))),
     ("wall, 12 points known", |seed| whole(&noisy(Scene { control: 12, ..wall(lens()) }, seed), settings("opencv5"))),
+    ("board, its principal point off the middle", |seed| {
+        whole(&noisy(Scene { camera: off_the_middle(), ..full_frame() }, seed), settings("opencv5"))
+    }),
+    ("board, the principal point held", |seed| {
+        let held = Optics {
+            solve: Some(["fx", "fy", "k1", "k2", "k3", "p1", "p2"].map(String::from).to_vec()),
+            start: Some(off_the_middle()),
+            ..optics("opencv5")
+        };
+        whole(&noisy(Scene { camera: off_the_middle(), ..full_frame() }, seed), Settings::new(vec![held]))
+    }),
+    ("board, upright photographs", |seed| upright(&noisy(board(lens()), seed))),
+    ("wall with a board on it", |seed| (among_control(97.0, seed).0, among_control(97.0, seed).1, settings("opencv5"))),
     ("wall, free network", |seed| whole(&noisy(wall(lens()), seed), Settings { datum: DatumChoice::Free, ..settings("opencv5") })),
 ];
 
 /// Inputs that are something else than they say, by the word of what is to be suspected first.
-pub const MISTAKEN: [(&str, Kind); 12] = [
+pub const MISTAKEN: [(&str, Kind); 14] = [
     ("lens", ("a fisheye as a pinhole", |seed| whole(&noisy(fisheyed(), seed), settings("opencv5")))),
-    ("raster", ("columns and rows of a board exchanged", |seed| {
-        let scene = noisy(board(lens()), seed);
-        let turned = |(k, row): (usize, ControlRow)| ControlRow { position: [30.0 * (k % 7) as f64, 30.0 * (k / 7) as f64, 0.0], ..row };
-        (scene.points(), scene.known().into_iter().enumerate().map(turned).collect(), settings("opencv5"))
-    })),
+    (
+        "raster",
+        ("columns and rows of a board exchanged", |seed| {
+            let scene = noisy(board(lens()), seed);
+            let turned =
+                |(k, row): (usize, ControlRow)| ControlRow { position: [30.0 * (k % 7) as f64, 30.0 * (k / 7) as f64, 0.0], ..row };
+            (scene.points(), scene.known().into_iter().enumerate().map(turned).collect(), settings("opencv5"))
+        }),
+    ),
     ("axes", ("x and y exchanged, of a wall", |seed| exchanged(&noisy(wall(lens()), seed)))),
     ("axes", ("x and y exchanged, of a board", |seed| exchanged(&noisy(board(lens()), seed)))),
-    ("up", ("y upwards, of a wall", |seed| {
-        let scene = noisy(wall(lens()), seed);
-        let upwards = |at: PixelPoint| PixelPoint::new(at.x, f64::from(SIZE.height) - 1.0 - at.y);
-        (moved(&scene.points(), upwards), scene.known(), settings("opencv5"))
-    })),
+    (
+        "up",
+        ("y upwards, of a wall", |seed| {
+            let scene = noisy(wall(lens()), seed);
+            let upwards = |at: PixelPoint| PixelPoint::new(at.x, f64::from(SIZE.height) - 1.0 - at.y);
+            (moved(&scene.points(), upwards), scene.known(), settings("opencv5"))
+        }),
+    ),
     ("spacing", ("another spacing of tags", |seed| (of_tags(18.0, seed).points(), of_tags(15.0, seed).known(), settings("opencv5")))),
-    ("stretch", ("a board longer along its rows", |seed| {
-        let stated = noisy(board(lens()), seed);
-        let stretched = stated.targets.iter().map(|at| Point3::new(1.03 * at.x, at.y, 0.0)).collect();
-        (Scene { targets: stretched, ..noisy(board(lens()), seed) }.points(), stated.known(), settings("opencv5"))
-    })),
-    ("scale", ("squares of another size among control", |seed| (among_control(97.0, seed).0, among_control(100.0, seed).1, settings("opencv5")))),
+    (
+        "stretch",
+        ("a board longer along its rows", |seed| {
+            let stated = noisy(board(lens()), seed);
+            let stretched = stated.targets.iter().map(|at| Point3::new(1.03 * at.x, at.y, 0.0)).collect();
+            (Scene { targets: stretched, ..noisy(board(lens()), seed) }.points(), stated.known(), settings("opencv5"))
+        }),
+    ),
+    (
+        "scale",
+        ("squares of another size among control", |seed| (among_control(97.0, seed).0, among_control(100.0, seed).1, settings("opencv5"))),
+    ),
     ("size", ("images twice as large as stated", |seed| of_size(&noisy(board(lens()), seed), [800, 600]))),
     ("size", ("images half as large as stated", |seed| of_size(&noisy(board(lens()), seed), [3200, 2400]))),
-    ("size", ("images cropped from what is stated", |seed| of_size(&noisy(full_frame(), seed), [2000, 1500]))),
+    ("size", ("width and height exchanged, of a wall", |seed| of_size(&noisy(wall(lens()), seed), [SIZE.height, SIZE.width]))),
+    ("size", ("images cropped to 16 : 9 from what is stated", |seed| of_size(&noisy(filled(), seed), [SIZE.width, 1600]))),
+    ("size", ("images cropped from what is stated", |seed| of_size(&noisy(filled(), seed), [2000, 1500]))),
     ("origin", ("pixels counted from the corner, at the border", |seed| of_size(&noisy(dense(), seed), [SIZE.width - 1, SIZE.height - 1]))),
 ];
 
-/// What a calibration answers: how many doubts it has, and what is suspected, as the commands ask; why there is none.
+/// What a calibration answers: how many doubts it has, and what would be suspected of it if it had any; why there is none.
+pub fn examined((points, control, settings): &Input) -> Result<(usize, Vec<Suspected>), CalibrationError> {
+    let prepared = prepare(points.clone(), control, settings)?;
+    calibrate(&prepared, &[], |calibration| (calibration.doubts().len(), suspected(points, control, settings, Ok(calibration))))
+}
+
+/// The same with what is suspected as the commands ask: where there are doubts, or no calibration.
 pub fn asked((points, control, settings): &Input) -> Result<(usize, Vec<Suspected>), (CalibrationError, Vec<Suspected>)> {
     let of_error = |error: CalibrationError| {
         let suspects = suspected(points, control, settings, Err(&error));
@@ -115,8 +149,13 @@ pub fn of_tags(gap: f64, seed: u64) -> Scene {
 }
 
 /// A board that fills the frame and more.
-pub fn full_frame() -> Scene {
+fn full_frame() -> Scene {
     raster([17, 11], 30.0)
+}
+
+/// The same with corners near every border.
+pub fn filled() -> Scene {
+    raster([36, 24], 15.0)
 }
 
 /// The same with so many corners that some lie at the border.
@@ -142,6 +181,20 @@ fn fisheyed() -> Scene {
         Pose::looking_at(at, middle + Vector3::new(30.0 * sin, 20.0 * cos, 0.0), Vector3::y(), 0.7 * f64::from(i)).unwrap()
     };
     Scene { poses: (0..8).map(station).collect(), ..board(lens) }
+}
+
+/// A lens as of a part of a sensor, or one that is shifted.
+fn off_the_middle() -> Camera {
+    let mut distortion = [0.0; 14];
+    distortion[..5].copy_from_slice(&[-0.11, 0.07, 4e-4, -6e-4, -0.012]);
+    OpenCv { size: SIZE, fx: 1450.0, fy: 1446.0, cx: 880.0, cy: 660.0, distortion, coefficients: 5 }.into()
+}
+
+/// The same photographs turned by a right angle.
+fn upright(scene: &Scene) -> Input {
+    let right = f64::from(SIZE.height) - 1.0;
+    let (points, control, settings) = of_size(scene, [SIZE.height, SIZE.width]);
+    (moved(&points, |at| PixelPoint::new(right - at.y, at.x)), control, settings)
 }
 
 /// A lens with one scale.

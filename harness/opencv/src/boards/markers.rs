@@ -6,8 +6,8 @@ use calibench_measure::{BoardFinder, BoardPointFound, Settings, Sought};
 use calibench_model::boards::{Board, Charuco, Dictionary as Codes};
 use calibench_model::{Image, PixelPoint, Rejection};
 use opencv::aruco::{
-    CORNER_REFINE_APRILTAG, CORNER_REFINE_CONTOUR, CORNER_REFINE_NONE, CharucoBoard, DetectorParameters, Dictionary, detect_markers, get_predefined_dictionary_i32,
-    interpolate_corners_charuco_def,
+    CORNER_REFINE_APRILTAG, CORNER_REFINE_CONTOUR, CORNER_REFINE_NONE, CharucoBoard, DetectorParameters, Dictionary, detect_markers,
+    get_predefined_dictionary_i32, interpolate_corners_charuco_def,
 };
 use opencv::core::{Mat, Point2f, Ptr, Vector};
 use opencv::prelude::DetectorParametersTrait;
@@ -45,9 +45,10 @@ const DICTIONARIES: [&str; 21] = [
 /// Source: opencv/opencv_contrib#3024, opencv/opencv#28380.
 const HALF: [f64; 2] = [0.5; 2];
 
-/// How far the corners of tags of a board seen somewhat from aside are displaced where no refinement mends it, px: some two pixels inwards along each edge, since the squares between tags touch their
-/// corners; a little less by the contour. Alike from 4.6 to 5.0 and for tags of all sizes. Source: findings/opencv-aprilgrid-corners.sh.
-const INWARDS: [f64; 2] = [-2.65, -1.99];
+/// How far the corners of tags lie outwards by refinement (none, subpix, contour, apriltag), px, on a board seen somewhat from aside: of tags whose corners touch squares,
+/// and of tags that stand alone. Without refinement corners of the first lie two pixels inside in x and in y, since the outline that is followed is the inner one, those of
+/// the second half a pixel. Alike from 4.6 to 5.0 but for subpix. Source: findings/opencv-aprilgrid-corners.sh, whose tags stand upright.
+const OUTWARDS: [[f64; 4]; 2] = [[-2.65, 0.0, -1.99, 0.0], [-0.71, -0.15, -0.71, 0.0]];
 
 fn place_of(dictionary: &Codes) -> Option<i32> {
     DICTIONARIES.iter().position(|name| name.eq_ignore_ascii_case(dictionary.name)).map(|place| place as i32)
@@ -189,12 +190,9 @@ impl BoardFinder for TagCorners {
         if self.corrected { [0.0; 2] } else { self.known() }
     }
 
-    fn outwards(&self, _: &Board) -> f64 {
-        match self.refinement {
-            CORNER_REFINE_NONE => INWARDS[0],
-            CORNER_REFINE_CONTOUR => INWARDS[1],
-            _ => 0.0,
-        }
+    fn outwards(&self, board: &Board) -> f64 {
+        let alone = matches!(board, Board::AprilGrid(grid) if grid.squares.is_none());
+        OUTWARDS[usize::from(alone)].get(self.refinement as usize).copied().unwrap_or(0.0)
     }
 
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {
@@ -204,7 +202,7 @@ impl BoardFinder for TagCorners {
     fn notes(&self) -> Vec<String> {
         let note = match self.refinement {
             CORNER_REFINE_NONE | CORNER_REFINE_CONTOUR => {
-                "it sees the tags of a grid 2 px too small along each edge; `refinement = 1` does not".to_owned()
+                "it has the corners of tags that touch squares up to 2 px inside in x and in y; `refinement = 1` mends that".to_owned()
             }
             CORNER_REFINE_APRILTAG if !self.corrected => {
                 "its refinement `apriltag` has corners half a pixel to the right and below; `corrected = 1` takes that out".to_owned()

@@ -61,8 +61,8 @@ impl Answer for CalibrationAnswer {
 /// What an input may be in truth.
 #[derive(Serialize, JsonSchema)]
 struct Suspect {
-    /// `lens` (a fisheye), `raster` (columns and rows of the board), `axes` (x and y of image points), `up` (y upwards), `spacing` (of the tags of a board), `stretch`
-    /// (of a board) or `size` (of the images).
+    /// `lens` (a fisheye), `raster` (columns and rows of the board), `axes` (x and y of image points), `up` (y upwards), `origin` (of
+    /// the pixels), `spacing` (of the tags of a board), `stretch` (of a board), `scale` (of a board among control) or `size` (of the images, cropped ones too).
     kind: &'static str,
     /// In words, with the estimate where there is one.
     what: String,
