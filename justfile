@@ -1,7 +1,7 @@
 # calibench: `just` lists the recipes. On a fresh machine call them through `./bootstrap RECIPE`, which installs what is missing first.
 
-# One package set and one profile for everything: other sets resolve other features and build the world twice.
-everything := "--release --workspace"
+# One package set and one profile for everything: other sets resolve other features and build the world twice. Of the versions of Cargo.lock, always.
+everything := "--locked --release --workspace"
 calibench := "./target/release/calibench"
 
 # Snapshots are compared and not written; `INSTA_UPDATE=always just test` accepts what is there now.
@@ -60,14 +60,14 @@ long := "efficiency bare_edges in_every_cell crowded the_bound_is_reached noise_
 quick CRATE:
     #!/usr/bin/env bash
     set -euo pipefail
-    callers=$(cargo tree --quiet --invert calibench-{{CRATE}} --depth 1 --prefix none --edges normal | cut -d' ' -f1 | grep '^calibench-' | sort -u)
+    callers=$(cargo tree --locked --quiet --invert calibench-{{CRATE}} --depth 1 --prefix none --edges normal | cut -d' ' -f1 | grep '^calibench-' | sort -u)
     packages=(--package calibench-{{CRATE}})
     for package in $callers; do
         case $package in calibench-cli | calibench-judge | calibench-opencv | calibench-point | calibench-python | calibench-tests) ;; *) packages+=(--package "$package") ;; esac
     done
     skips=()
     for name in {{long}}; do skips+=(--skip "$name"); done
-    cargo test --profile quick --lib --quiet "${packages[@]}" -- "${skips[@]}"
+    cargo test --locked --profile quick --lib --quiet "${packages[@]}" -- "${skips[@]}"
     echo "not tested: cli, judge, point, OpenCV, Python, what crosses crates, and tests that take long (\`just --evaluate long\`): \`just test\` does"
 
 # What is left to the night, and the sum of the last test run
@@ -126,11 +126,11 @@ deny:
 
 # Points per second of every operator, of cameras, milliseconds of the recognition, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
-    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns --bench bounds
+    cargo bench --locked --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns --bench bounds
 
 # How often sound calibrations are doubted, and planted mistakes named: COUNT draws of each sound kind, a tenth of that of each mistake
 doubts COUNT="1000":
-    cargo bench --quiet --workspace --bench doubts -- {{COUNT}}
+    cargo bench --locked --quiet --workspace --bench doubts -- {{COUNT}}
 
 # What the tests open pages in (`./bootstrap browser` installs it)
 browser:
@@ -157,7 +157,7 @@ perf-cluster minutes="5": python
 # What weighs most in the wheel: its sections, crates and functions
 size-python: wheel
     # The library once more with the symbols that the wheel is without.
-    cargo build --profile wheel --quiet --package calibench-python
+    cargo build --locked --profile wheel --quiet --package calibench-python
     target/python/bin/python harness/python/benches/size.py
 
 # Boards found, how well and how fast, beside OpenCV on the same images
@@ -171,7 +171,7 @@ perf-commands: python
 
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:
-    cargo bench --workspace --bench rows
+    cargo bench --locked --workspace --bench rows
 
 # Every reader of files against mutated ones: seconds for each reader, and a seed that makes the same files again
 fuzz seconds="60" seed="15":
@@ -181,7 +181,7 @@ fuzz seconds="60" seed="15":
 package *OPTIONS:
     # Of a version that cargo has once unpacked and built it takes no new one: without this, packages would be built on those of last time.
     rm -rf "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/calibench-* target/debug/.fingerprint/calibench-*
-    CARGO_PROFILE_DEV_DEBUG=0 cargo package --workspace --exclude calibench-tests --exclude calibench-python {{OPTIONS}}
+    CARGO_PROFILE_DEV_DEBUG=0 cargo package --locked --workspace --exclude calibench-tests --exclude calibench-python {{OPTIONS}}
 
 # The pages of docs/ as a book, target/book/index.html: their commands run, their figures are made (`./bootstrap docs` installs mdBook in target/tools)
 docs: build
