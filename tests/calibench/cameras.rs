@@ -222,7 +222,7 @@ fn every_mistake_has_its_price() {
 }
 
 #[test]
-#[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: see the README, `Data`")]
+#[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: docs/scenarios.md says where they are looked for")]
 fn the_open_points_of_old_photoscan_are_decided_by_flags() {
     let file = data().join("photoscan-old-cameras.xml");
     let file = file.to_str().unwrap();
@@ -241,7 +241,7 @@ fn data() -> PathBuf {
 }
 
 #[test]
-#[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: see the README, `Data`")]
+#[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: docs/scenarios.md says where they are looked for")]
 fn two_exports_of_one_adjustment_are_one_camera() {
     let file = |name: &str| data().join(name).to_str().unwrap().to_owned();
     let text = good(&root(), &["diff", &file("metashape-24mm.xml"), &file("opencv-24mm.xml")]);

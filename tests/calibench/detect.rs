@@ -192,7 +192,10 @@ fn other_testfields_and_options_are_refused() {
 }
 
 #[test]
-#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+#[cfg_attr(
+    not(photographs),
+    ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for"
+)]
 fn photographs_of_a_chessboard_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let project = root().display().to_string();

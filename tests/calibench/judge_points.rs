@@ -84,7 +84,10 @@ fn files_are_judged_exactly_as_the_photographs_they_were_measured_in() {
 }
 
 #[test]
-#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+#[cfg_attr(
+    not(photographs),
+    ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for"
+)]
 fn files_measured_in_real_photographs_are_judged_as_these() {
     let folder = tempfile::tempdir().unwrap();
     let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from).join("opencv-left");

@@ -7,7 +7,10 @@ fn data() -> std::path::PathBuf {
 }
 
 #[test]
-#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+#[cfg_attr(
+    not(photographs),
+    ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for"
+)]
 fn the_report_compares_all_operators_on_all_photographs() {
     let project = copy();
     assert!(run(project.path(), &["run", "photographs/opencv-left", "-q"]).status.success());
@@ -26,7 +29,10 @@ fn the_report_compares_all_operators_on_all_photographs() {
 }
 
 #[test]
-#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+#[cfg_attr(
+    not(photographs),
+    ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for"
+)]
 fn detect_feeds_measure() {
     let folder = tempfile::tempdir().unwrap();
     let photo = data().join("opencv-left/left01.jpg");

@@ -323,7 +323,7 @@ pub struct TargetWire {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhotographsWire {
-    /// Folder of the photographs, below the data folder (see the README) or absolute. If it is absent the scenario is `unavailable`.
+    /// Folder of the photographs, below the data folder (`CALIBENCH_DATA`, `../shared/data` beside the checkout without it) or absolute. If it is absent the scenario is `unavailable`.
     #[schemars(with = "String")]
     pub folder: Spanned<String>,
     /// File names, in the order of the report.

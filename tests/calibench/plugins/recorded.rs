@@ -148,7 +148,10 @@ name = "forstner"
 "#;
 
 /// Photographs and corners are known by their names.
-#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+#[cfg_attr(
+    not(photographs),
+    ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for"
+)]
 #[test]
 fn photographs_of_a_scenario_have_files_of_positions_too() {
     let toml = "[[method]]\nname = \"recorded\"\nfile = \"mine.csv\"\nphotographs = \"photographs/few\"\n";

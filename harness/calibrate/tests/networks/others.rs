@@ -11,7 +11,7 @@ const NETWORKS: [(&str, [u32; 2], f64, f64); 3] =
     [("60", [4000, 3000], 0.206, 1328.2), ("98", [1280, 1024], 0.195, 582.9), ("1002", [4000, 3000], 0.205, 1418.6)];
 
 #[test]
-#[cfg_attr(not(networks), ignore = "the networks of others are absent: see the README, `Data`")]
+#[cfg_attr(not(networks), ignore = "the networks of others are absent: docs/scenarios.md says where they are looked for")]
 fn wide_lenses_arrive_where_opencv_does() {
     let folder = Path::new(option_env!("CALIBENCH_NETWORKS").unwrap_or_default());
     for (name, [width, height], rms, fx) in NETWORKS {
@@ -32,7 +32,7 @@ fn wide_lenses_arrive_where_opencv_does() {
 
 /// Up to a third of the image points are off by up to a twentieth of the frame; the camera is that of the others, whose standard deviation is 0.5 px at most.
 #[test]
-#[cfg_attr(not(networks), ignore = "the networks of others are absent: see the README, `Data`")]
+#[cfg_attr(not(networks), ignore = "the networks of others are absent: docs/scenarios.md says where they are looked for")]
 fn gross_errors_lead_no_wide_lens_astray() {
     let folder = Path::new(option_env!("CALIBENCH_NETWORKS").unwrap_or_default());
     for (name, [width, height], _, fx) in NETWORKS {
