@@ -19,6 +19,7 @@ mod next;
 mod optics;
 pub mod orientation;
 mod over_frame;
+mod placed;
 mod prepared;
 mod prior;
 mod resampled;

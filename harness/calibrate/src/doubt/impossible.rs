@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 
 use calibench_adjust::ImageObservation;
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, Fold, ImageSize, Ray, fold, implausible};
+use calibench_model::camera::{Camera, CameraModel, Fold, Ray, fold, implausible};
 
 use crate::Calibration;
-use crate::suspect::frame::cropped;
+use crate::placed::{cropped, is_outside};
 
 /// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
@@ -78,12 +78,6 @@ fn outside(calibration: &Calibration<'_>) -> Option<String> {
     let observations = calibration.prepared.network.observations.iter().enumerate();
     let count = observations.filter(|(index, o)| is_outside(o) && !left_out.contains(index)).count();
     (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
-}
-
-/// Whether a position is in no pixel of an image.
-pub(crate) fn is_outside(size: ImageSize, position: PixelPoint) -> bool {
-    let at = position.to_corner();
-    !((0.0..=f64::from(size.width)).contains(&at.x) && (0.0..=f64::from(size.height)).contains(&at.y))
 }
 
 /// The length that half of the residuals reach, so that gross errors do not count, whether they were left out or not; where no operator leaves as much.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::misfit::{Misfit, ROUNDING};
 use super::precision::Residuals;
-use crate::doubt::impossible::is_outside;
+use crate::placed::is_outside;
 use crate::{Survey, control_of};
 
 /// A second minimum whose sum of squares is less than this many times the first one's makes a pose doubtful.

@@ -1,7 +1,7 @@
 //! Inputs that are something else than they say: what they may be in truth is tried, one after the other, and what explains the points is named.
 
 mod alternatives;
-pub(crate) mod frame;
+mod frame;
 mod raster;
 mod scale;
 mod shape;
@@ -11,7 +11,7 @@ use calibench_exchange::{ControlRow, Points};
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, Ray};
 
-use crate::doubt::impossible::is_outside;
+use crate::placed::is_outside;
 use crate::{Calibration, CalibrationError, Settings, prepare};
 use alternatives::Alternative;
 use raster::Raster;
