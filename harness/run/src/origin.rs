@@ -18,7 +18,7 @@ const PHASES: usize = 4;
 /// Fewer points than this say nothing.
 const FEWEST: usize = 30;
 /// From the median length of plane normal errors to the standard deviation of a coordinate, and from that of a mean to that of a spatial median.
-const NORMAL: [f64; 2] = [0.849_321_800_288_019, 1.128_379_167_095_513];
+const NORMAL: [f64; 2] = [0.849_321_800_288_019, std::f64::consts::FRAC_2_SQRT_PI];
 /// Steps towards a spatial median, and the length below which errors weigh no more, px.
 const STEPS: (usize, f64) = (100, 1e-5);
 /// How far the middle of a sound finder may lie from what it states, px, beyond so many standard errors.
@@ -141,10 +141,10 @@ fn check_origin(finder: &dyn BoardFinder, board: Board, origin: &Origin) -> Resu
     let [x, y] = finder.origin(&board);
     let stated = [x, y, finder.outwards(&board)];
     for (k, direction) in DIRECTIONS.into_iter().enumerate() {
-        if !(error[k] < VAGUE) {
+        if error[k].is_nan() || error[k] > VAGUE {
             return Err(format!("`{board}`: points scatter too much, or lie too much alike, to tell whether they are off {direction}"));
         }
-        if !((median[k] - stated[k]).abs() - FAR.1 * error[k] <= FAR.0) {
+        if (median[k] - stated[k]).abs() - FAR.1 * error[k] > FAR.0 {
             return Err(format!(
                 "`{board}`: points lie {:+.3} ± {:.3} px off {direction} in the median of 16 phases, where {:+.3} are stated; expected within {} px",
                 median[k], error[k], stated[k], FAR.0
