@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use calibench_adjust::ImageObservation;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize, Ray};
 
@@ -49,27 +50,37 @@ fn sigmas(calibration: &Calibration<'_>, index: usize) -> Option<[f64; 2]> {
     sigmas.iter().all(|sigma| *sigma > 0.0).then_some(sigmas)
 }
 
-/// The image points of a camera that are in use.
-pub fn positions(calibration: &Calibration<'_>, index: usize) -> Vec<PixelPoint> {
+/// The image points that are in use.
+pub fn in_use<'c>(calibration: &'c Calibration<'_>) -> impl Iterator<Item = &'c ImageObservation> {
     let left_out: HashSet<usize> = calibration.options().left_out.into_iter().collect();
     let observations = calibration.prepared.network.observations.iter().enumerate();
-    observations.filter(|(k, one)| calibration.owner(one.image) == index && !left_out.contains(k)).map(|(_, one)| one.position).collect()
+    observations.filter(move |(k, _)| !left_out.contains(k)).map(|(_, one)| one)
+}
+
+/// Those of a camera, px.
+pub fn positions(calibration: &Calibration<'_>, index: usize) -> Vec<PixelPoint> {
+    in_use(calibration).filter(|one| calibration.owner(one.image) == index).map(|one| one.position).collect()
 }
 
 /// How many times the stated width and height images are that were cropped, as the principal point, where it is well known, and the points that fill them show.
 pub fn cropped(calibration: &Calibration<'_>, index: usize) -> Option<[f64; 2]> {
     let size = calibration.camera(index).size();
-    let (shares, sigmas) = (shares(calibration, index)?, sigmas(calibration, index)?);
+    let shares = shares(calibration, index)?;
+    let is_whole = |axis: usize| (shares[axis] - 1.0).abs() < NEAR;
+    // That of nearly every camera is, and its points need not be looked at.
+    if is_whole(0) && is_whole(1) {
+        return None;
+    }
+    let sigmas = sigmas(calibration, index)?;
     let reach = positions(calibration, index)
         .into_iter()
         .map(PixelPoint::to_corner)
         .fold([0.0_f64; 2], |most, at| [most[0].max(at.x / f64::from(size.width)), most[1].max(at.y / f64::from(size.height))]);
-    let is_whole = |axis: usize| (shares[axis] - 1.0).abs() < NEAR;
     let is_other = |axis: usize| {
         let times = shares[axis];
         (times - 1.0).abs() > CROPPED && (times < 1.0 || reach[axis] > 1.0) && FILLED.contains(&(reach[axis] / times))
     };
     let is_known = (0..2).all(|axis| SIGMAS * sigmas[axis] < NEAR * shares[axis]);
-    let is_cropped = (0..2).all(|axis| is_whole(axis) || is_other(axis)) && (0..2).any(is_other);
+    let is_cropped = (0..2).all(|axis| is_whole(axis) || is_other(axis));
     (is_known && is_cropped).then(|| [0, 1].map(|axis| if is_whole(axis) { 1.0 } else { shares[axis] }))
 }

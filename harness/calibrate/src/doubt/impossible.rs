@@ -1,6 +1,5 @@
 //! What cannot be as it is said to be: points outside of their images, images of another size, cameras that no lens makes, residuals that no operator leaves.
 
-use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 use calibench_adjust::ImageObservation;
@@ -8,7 +7,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Fold, Ray, fold, implausible};
 
 use crate::Calibration;
-use crate::placed::{cropped, is_outside};
+use crate::placed::{cropped, in_use, is_outside};
 
 /// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
@@ -73,10 +72,8 @@ fn of_a_crop(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
 
 /// Image points in use outside the frame: of another size, or swapped coordinates.
 fn outside(calibration: &Calibration<'_>) -> Option<String> {
-    let left_out: HashSet<usize> = calibration.options().left_out.into_iter().collect();
-    let is_outside = |o: &ImageObservation| is_outside(calibration.camera(calibration.owner(o.image)).size(), o.position);
-    let observations = calibration.prepared.network.observations.iter().enumerate();
-    let count = observations.filter(|(index, o)| is_outside(o) && !left_out.contains(index)).count();
+    let is_outside = |o: &&ImageObservation| is_outside(calibration.camera(calibration.owner(o.image)).size(), o.position);
+    let count = in_use(calibration).filter(is_outside).count();
     (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
 }
 
