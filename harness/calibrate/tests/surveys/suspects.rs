@@ -65,3 +65,23 @@ fn where_pixels_are_counted_from_is_named_where_points_lie_at_the_border() {
         assert!(found.len() == 1 && found[0].kind == "origin" && found[0].what.contains(word), "{by}: {found:?}");
     }
 }
+
+#[test]
+fn a_board_that_stands_elsewhere_is_none_of_another_size() {
+    let (points, mut control) = among_control(97.0, 3);
+    control.iter_mut().filter(|row| row.target.starts_with('r')).for_each(|row| row.position[0] += 4.0);
+    let (doubts, suspects) = asked(&(points, control, settings("opencv5"))).unwrap();
+    assert!(doubts > 0 && suspects.iter().all(|found| found.kind != "scale"), "{suspects:?}");
+}
+
+#[test]
+fn a_principal_point_that_is_held_tells_of_no_crop() {
+    let (points, control, free) = of_size(&noisy(filled(), 1), [2000, 1500]);
+    let calibench_model::camera::Camera::OpenCv(truth) = lens() else { panic!("a pinhole") };
+    let start = calibench_model::camera::OpenCv { size: free.cameras[0].size, ..truth };
+    let mut held = free.clone();
+    held.cameras[0].solve = Some(["fx", "fy", "k1", "k2", "k3", "p1", "p2"].map(String::from).to_vec());
+    held.cameras[0].start = Some(start.into());
+    let doubts = |settings| examined(&(points.clone(), control.clone(), settings)).unwrap().0;
+    assert_eq!((doubts(free), doubts(held)), (1, 0));
+}
