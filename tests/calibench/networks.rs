@@ -7,8 +7,9 @@ use calibench_exchange::{ControlRow, PointRow, Points};
 use calibench_model::Start;
 use calibench_model::camera::CameraModel;
 use calibench_random::Key;
+use calibench_records::figures::Group;
 use calibench_records::results::Trial;
-use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_records::results::{Calibrated, Figure};
 use calibench_run::Plan;
 use calibench_run::network::{ImagePoint, Job, calibrate, observe};
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
@@ -51,7 +52,7 @@ fn first_trial(scenario: &Scenario) -> Trial {
 
 fn figure<'a>(calibrated: &'a Calibrated, group: Group, name: &str) -> &'a Figure {
     let figures = calibrated.outcome.as_ref().unwrap();
-    figures.iter().find(|figure| figure.group == group && &*figure.name == name).unwrap_or_else(|| panic!("{name}"))
+    figures.iter().find(|figure| figure.name.group() == group && figure.name.text() == name).unwrap_or_else(|| panic!("{name}"))
 }
 
 #[test]

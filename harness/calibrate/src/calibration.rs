@@ -8,7 +8,7 @@ use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
 use crate::ended::{ITERATIONS, ended};
-use crate::{CalibrationError, Checked, Compared, OverFrame, Prepared, Resampled};
+use crate::{CalibrationError, Checked, Compared, Doubt, OverFrame, Prepared, Resampled};
 
 /// A calibration and its quality.
 #[derive(Clone, Debug)]
@@ -36,9 +36,9 @@ pub struct Calibration<'n> {
     /// Folds inside the frame where a fisheye may see nothing more, in words: no doubts. Empty until [`Calibration::examine`].
     pub rims: Vec<String>,
     /// Cameras that are hardly known; empty until [`Calibration::examine`].
-    pub uncertain: Vec<String>,
+    pub uncertain: Vec<Doubt>,
     /// What cannot be as it is said to be, whatever the model; empty until [`Calibration::examine`].
-    pub impossible: Vec<String>,
+    pub impossible: Vec<Doubt>,
 }
 
 impl Prepared {

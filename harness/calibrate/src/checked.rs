@@ -1,13 +1,15 @@
 //! What was looked for in the residuals, and what was found.
 
+use crate::{Doubt, Subject};
+
 /// Times the standard deviation of the camera over the frame (RMS, after the best rotation) by which a structure must move it to count.
 pub const SHARE: f64 = 3.0;
 
 /// What was looked for, and with what result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked {
-    /// What was looked for, in words.
-    pub what: &'static str,
+    /// What was looked at.
+    pub subject: Subject,
     /// The result.
     pub verdict: Verdict,
 }
@@ -47,15 +49,15 @@ impl Checked {
     /// What was not looked for, and why; `None` where it was.
     pub fn untested(&self) -> Option<String> {
         match &self.verdict {
-            Verdict::Untested(why) => Some(format!("{}: {why}", self.what)),
+            Verdict::Untested(why) => Some(format!("{}: {why}", self.subject.what())),
             _ => None,
         }
     }
 
-    /// The most likely cause of a doubt.
-    pub fn doubt(&self) -> Option<&str> {
+    /// The doubt, with its most likely cause.
+    pub fn doubt(&self) -> Option<Doubt> {
         match &self.verdict {
-            Verdict::Doubt(_, cause) => Some(cause),
+            Verdict::Doubt(finding, cause) => Some(Doubt { finding: Some(*finding), ..Doubt::of_all(self.subject, cause.clone()) }),
             _ => None,
         }
     }

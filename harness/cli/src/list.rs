@@ -6,6 +6,7 @@ use calibench_exchange::camera::FORMATS;
 use calibench_exchange::camera::target::TARGETS;
 use calibench_measure::registry::Build;
 use calibench_model::camera::{Convention, Verification};
+use calibench_records::figures::{Better, Group, Quantity};
 use calibench_report::published;
 use clap::ValueEnum;
 
@@ -26,6 +27,8 @@ pub enum What {
     Formats,
     /// Published tables and the scenarios behind them
     Tables,
+    /// Figures that records hold, with their groups, units and meanings
+    Figures,
 }
 
 pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
@@ -35,6 +38,7 @@ pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
         What::Conventions => conventions(),
         What::Formats => formats(),
         What::Tables => tables(context)?,
+        What::Figures => figures(),
     })
 }
 
@@ -99,6 +103,18 @@ fn formats() -> String {
         models.dedup();
         if !models.is_empty() {
             let _ = writeln!(text, "  {}: {}; --model chooses among {}", format.name, format.tool, models.join(", "));
+        }
+    }
+    text
+}
+
+fn figures() -> String {
+    let mut text = String::new();
+    for (group, name) in Group::ALL {
+        let _ = writeln!(text, "{name}");
+        for entry in Quantity::CATALOGUE.iter().filter(|entry| entry.group == group) {
+            let better = if entry.better == Better::Neither { String::new() } else { format!(", {} is better", entry.better.text()) };
+            let _ = writeln!(text, "    {} ({}{better})\n        {}", entry.pattern, entry.units.text(), entry.meaning);
         }
     }
     text

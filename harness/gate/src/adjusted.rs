@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use calibench_model::Rejection;
 use calibench_records::adjustments as recorded;
-use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_records::figures::{FigureName, Group, Kind, Quantity};
+use calibench_records::results::{Calibrated, Figure, find};
 
 use super::point_entry::{Entry, Found, rounded};
 
@@ -20,11 +21,11 @@ pub struct Numbers {
     pub error: Option<f64>,
 }
 
-/// Which figure of the adjustments of a method: the set of parameters (from 0), the group, the name within it.
-pub type FigureKey = (usize, Group, Arc<str>);
+/// Which figure of the adjustments of a method: the set of parameters (from 0), and the figure.
+pub type FigureKey = (usize, FigureName);
 
 /// The errors of check points that are compared as points are, in the object unit.
-pub(super) const CHECKED: [&str; 2] = ["rmse_xy", "rmse_z"];
+pub(super) const CHECKED: [Quantity; 2] = [Quantity::RmseXy, Quantity::RmseZ];
 
 /// The view under which they stand.
 pub(super) const VIEW: &str = "adjustment";
@@ -39,21 +40,20 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
     };
     let measured = |x: f64, y: f64| Entry::Measured(Found::bare([rounded(x), rounded(y)]));
     let value = |figure: &Figure| recorded::recorded(figure).value;
-    let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
-    let Some(frame) = find(Group::Frame, "rms") else {
-        // Counted with what holds its frame: a free network, and not one of a camera's further sets.
-        let sigma0 = find(Group::Network, "sigma0").filter(|_| find(Group::Network, "of them held").is_some());
+    let Some(frame) = find(figures, Quantity::OverFrame) else {
+        let sigma0 = find(figures, Quantity::Sigma0).filter(|_| adjusted.kind() == Some(Kind::FreeNetwork));
         let sigma0 = sigma0.map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(value(figure), 0.0)));
         let recognised = recognised(figures).into_iter().map(|(name, [lost, wrong])| (name, measured(lost, wrong)));
         let found: Vec<(Arc<str>, Entry)> = sigma0.into_iter().chain(recognised).collect();
         // Figures without any of a camera are no adjustment of one: what is printed, and what follows from it.
-        let camera = first && figures.iter().any(|figure| figure.group == Group::Iop);
+        let camera = first && figures.iter().any(|figure| figure.name.group() == Group::Iop);
         return if found.is_empty() && camera { vec![("camera".into(), failed)] } else { found };
     };
     if !first {
         return Vec::new();
     }
-    let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * value(figure) } else { value(figure) });
+    let mm =
+        |quantity: Quantity| find(figures, quantity).map(|figure| if figure.unit == "m" { 1e3 * value(figure) } else { value(figure) });
     let check = match CHECKED.map(mm) {
         [Some(xy), Some(z)] => Some(measured(xy, z)),
         _ => adjusted.check_failed.as_ref().map(|_| failed),
@@ -62,20 +62,43 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
     [camera].into_iter().chain(check.map(|entry| ("check points".into(), entry))).collect()
 }
 
+/// What is counted of a classifier's targets and labels, over all images.
+#[derive(Default)]
+struct Counts {
+    targets: Option<f64>,
+    labelled: Option<f64>,
+    labels: Option<f64>,
+    wrong: Option<f64>,
+}
+
+/// Whose count a figure is, and which; finders of boards go by the name of `board`.
+fn counted(name: &FigureName) -> Option<(&str, fn(&mut Counts) -> &mut Option<f64>)> {
+    let classifier = || name.parts().first().copied().unwrap_or_default();
+    Some(match name.quantity() {
+        Quantity::SeenTargets => (classifier(), |counts| &mut counts.targets),
+        Quantity::Labelled => (classifier(), |counts| &mut counts.labelled),
+        Quantity::Labels => (classifier(), |counts| &mut counts.labels),
+        Quantity::WrongLabels => (classifier(), |counts| &mut counts.wrong),
+        Quantity::BoardTargets => ("board", |counts| &mut counts.targets),
+        Quantity::BoardLabelled => ("board", |counts| &mut counts.labelled),
+        Quantity::BoardLabels => ("board", |counts| &mut counts.labels),
+        Quantity::BoardWrongLabels => ("board", |counts| &mut counts.wrong),
+        _ => return None,
+    })
+}
+
 /// Of each classifier the share of the targets without a right label, and of the labels that are wrong.
 fn recognised(figures: &[Figure]) -> Vec<(Arc<str>, [f64; 2])> {
-    let mut counts: BTreeMap<&str, BTreeMap<&str, f64>> = BTreeMap::new();
-    for figure in figures.iter().filter(|figure| figure.group == Group::Network) {
-        let mut parts = figure.name.split('/');
-        if let (Some(classifier), Some(what), Some(_), None) = (parts.next(), parts.next(), parts.next(), parts.next()) {
-            *counts.entry(classifier).or_default().entry(what).or_default() += figure.value;
-        }
+    let mut counts: BTreeMap<&str, Counts> = BTreeMap::new();
+    for figure in figures {
+        let Some((whose, count)) = counted(&figure.name) else { continue };
+        let counts = counts.entry(whose).or_default();
+        *count(counts).get_or_insert(0.0) += figure.value;
     }
-    let shares = |(classifier, counts): (&str, BTreeMap<&str, f64>)| {
-        let count = |what: &str| counts.get(what).copied();
+    let shares = |(classifier, counts): (&str, Counts)| {
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 1.0 };
-        let (targets, labelled) = (count("targets")?, count("labelled")?);
-        let wrong = share(count("wrong labels").unwrap_or(0.0), count("labels").unwrap_or(0.0).max(1.0));
+        let (targets, labelled) = (counts.targets?, counts.labelled?);
+        let wrong = share(counts.wrong.unwrap_or(0.0), counts.labels.unwrap_or(0.0).max(1.0));
         Some((format!("recognition {classifier}").into(), [share(targets - labelled, targets), wrong]))
     };
     counts.into_iter().filter_map(shares).collect()
@@ -83,11 +106,11 @@ fn recognised(figures: &[Figure]) -> Vec<(Arc<str>, [f64; 2])> {
 
 /// Every figure but the residuals of single points, each in its unit, with the digits of records: a run and its records are alike.
 pub(super) fn figures(adjusted: &Calibrated) -> Vec<(FigureKey, Numbers)> {
-    let figures = adjusted.outcome.iter().flatten().filter(|figure| !matches!(figure.group, Group::Point | Group::Object));
+    let figures = adjusted.outcome.iter().flatten().filter(|figure| !matches!(figure.name.group(), Group::Point | Group::Object));
     figures
         .map(|figure| {
             let recorded::Numbers { value, sigma, error } = recorded::recorded(figure);
-            ((adjusted.set, figure.group, figure.name.clone()), Numbers { value, sigma, error })
+            ((adjusted.set, figure.name.clone()), Numbers { value, sigma, error })
         })
         .collect()
 }
@@ -97,7 +120,8 @@ mod tests {
     use super::*;
 
     fn calibrated(set: usize, figures: &[(Group, &str, f64)]) -> Calibrated {
-        let figures = figures.iter().map(|(group, name, value)| Figure::plain(*group, *name, *value, "")).collect();
+        let figures =
+            figures.iter().map(|(group, name, value)| Figure::plain(FigureName::parse(*group, name).unwrap(), *value, "")).collect();
         Calibrated { method: 0, set, outcome: Ok(figures), check_failed: None }
     }
 
@@ -123,7 +147,7 @@ mod tests {
     #[test]
     fn a_camera_that_is_not_compared_is_a_failed_one_and_what_is_no_camera_is_none() {
         assert_eq!(found(&calibrated(0, &[(Group::Iop, "c", 18.0)])), [("camera".to_owned(), Entry::Rejected(Rejection::NotConverged))]);
-        assert_eq!(found(&calibrated(0, &[(Group::Network, "pixel size", 5.38)])), []);
+        assert_eq!(found(&calibrated(0, &[(Group::Network, "from the width of 22 mm, um", 5.38)])), []);
     }
 
     #[test]

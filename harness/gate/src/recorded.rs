@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use calibench_records::figures::{Group, Kind};
 use calibench_records::names::SCENARIO;
-use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
+use calibench_records::results::{Calibrated, Figure, MethodInfo, Outcome, Trial};
 use calibench_records::stored::{StoredError, Table as Stored, read_adjustments, read_points};
 
 use super::adjusted::CHECKED;
@@ -21,7 +22,8 @@ pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, 
     let mut table: Option<Table> = None;
     let start = |trial: &Trial, methods: &[MethodInfo]| Table::new(name, 0, Coordinates::of(has_truth(trial)), methods);
     let adjusted = if Stored::Adjustments.is_in(folder)? { Some(adjustments_of(folder, name, unit)?) } else { None };
-    let are_adjusted = adjusted.as_ref().is_some_and(|(_, trials)| !trials.values().flatten().all(|(_, one)| one.is_count()));
+    let are_adjusted =
+        adjusted.as_ref().is_some_and(|(_, trials)| !trials.values().flatten().all(|(_, one)| one.kind() == Some(Kind::Detection)));
     let head = read_points(folder, name, |trial, methods| {
         let table = table.get_or_insert_with(|| start(&trial, methods));
         table.name_methods(methods);
@@ -78,17 +80,16 @@ fn adjustments_of(folder: &Path, name: &str, unit: &'static str) -> Result<(Opti
     let mut sets: BTreeMap<Arc<str>, usize> = BTreeMap::new();
     let mut all: BTreeMap<u64, BTreeMap<(Arc<str>, usize), Calibrated>> = BTreeMap::new();
     let run = read_adjustments(folder, name, |row| {
-        if row.group == Group::Check && CHECKED.contains(&&*row.name) && *row.unit != *unit {
-            other.get_or_insert_with(|| format!("has `{}` in `{}`, expected the scenario's `{unit}`", row.name, row.unit));
+        if let Some((name, _)) = row.figure.as_ref().ok().filter(|(name, _)| CHECKED.contains(&name.quantity()) && *row.unit != *unit) {
+            other.get_or_insert_with(|| format!("has `{name}` in `{}`, expected the scenario's `{unit}`", row.unit));
         }
         let next = sets.len();
         let set = *sets.entry(row.set).or_insert(next);
         let none = Calibrated { method: 0, set, outcome: Ok(Vec::new()), check_failed: None };
         let one = all.entry(row.trial).or_default().entry((row.method, set)).or_insert(none);
         match (row.figure, &mut one.outcome) {
-            (Ok(numbers), Ok(figures)) => {
-                let (group, name) = (row.group, row.name);
-                figures.push(Figure { group, name, value: numbers.value, sigma: numbers.sigma, error: numbers.error, unit });
+            (Ok((name, numbers)), Ok(figures)) => {
+                figures.push(Figure { name, value: numbers.value, sigma: numbers.sigma, error: numbers.error, unit });
             }
             (Err(why), _) if row.group == Group::Check => one.check_failed = Some(why),
             (Err(why), _) => one.outcome = Err(why),
@@ -106,6 +107,7 @@ fn adjustments_of(folder: &Path, name: &str, unit: &'static str) -> Result<(Opti
 mod tests {
     use calibench_records::adjustments::CalibrationWriter;
     use calibench_records::compressor::Compressor;
+    use calibench_records::figures::Quantity;
     use calibench_records::points::{RecordWriter, RunInfo};
 
     use super::*;
@@ -122,8 +124,8 @@ mod tests {
         records.finish().unwrap().finish().unwrap();
         let mut adjustments = CalibrationWriter::new(table(Stored::Adjustments), run, methods, vec!["held".into()]).unwrap();
         let calibrated = |method: usize, rms: f64| {
-            let figures = [(Group::Frame, "rms", rms), (Group::Check, "rmse_xy", 0.25), (Group::Check, "rmse_z", 0.5)];
-            let figures = figures.map(|(group, name, value)| Figure::plain(group, name, value, "m"));
+            let figures = [(Quantity::OverFrame, rms, "px"), (Quantity::RmseXy, 0.25, "m"), (Quantity::RmseZ, 0.5, "m")];
+            let figures = figures.map(|(quantity, value, unit)| Figure::plain(quantity, value, unit));
             Calibrated { method, set: 0, outcome: Ok(figures.to_vec()), check_failed: None }
         };
         for trial in 0..2 {
@@ -135,7 +137,7 @@ mod tests {
         assert_eq!((table.seed, table.trials(), table.methods().count()), (9, 2, 2));
         let b = table.method("b").unwrap();
         assert_eq!((&*b.version, b.points.len()), ("3", 4), "the camera and the check points of two trials");
-        let rms = &b.figures[&(0, Group::Frame, "rms".into())];
+        let rms = &b.figures[&(0, Quantity::OverFrame.into())];
         assert!(rms.len() == 2 && rms.values().all(|numbers| numbers.value == 2.0));
     }
 
@@ -153,8 +155,7 @@ mod tests {
         records.finish().unwrap().finish().unwrap();
         let methods = vec![info("opencv_subpix", "4.10"), info(adjusted, "1")];
         let mut adjustments = CalibrationWriter::new(table(Stored::Adjustments), points[1].clone(), methods, vec!["held".into()]).unwrap();
-        let figures =
-            [(Group::Frame, "rms", "px"), (Group::Check, "rmse_xy", unit)].map(|(group, name, unit)| Figure::plain(group, name, 2.0, unit));
+        let figures = [(Quantity::OverFrame, "px"), (Quantity::RmseXy, unit)].map(|(quantity, unit)| Figure::plain(quantity, 2.0, unit));
         let one = |method| Calibrated { method, set: 0, outcome: Ok(figures.to_vec()), check_failed: None };
         adjustments.trial(0, &[one(0), one(1)]).unwrap();
         adjustments.finish().unwrap().finish().unwrap();

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use calibench_records::results::{Calibrated, MethodInfo, Trial};
+use calibench_records::figures::Kind;
+use calibench_records::results::{MethodInfo, Trial};
 
 use super::adjusted::{self, FigureKey, Numbers};
 use super::point_entry::{Coordinates, Entry, Place};
@@ -94,7 +95,7 @@ impl Table {
     /// When a point names a method that is not in the list given to [`Table::new`]: another run's trial.
     pub fn add(&mut self, trial: &Trial) {
         self.add_adjusted(trial);
-        let are_adjusted = !trial.calibrations.iter().all(Calibrated::is_count);
+        let are_adjusted = !trial.calibrations.iter().all(|one| one.kind() == Some(Kind::Detection));
         self.add_points(trial, are_adjusted);
     }
 

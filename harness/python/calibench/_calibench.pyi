@@ -268,6 +268,9 @@ class Calibration:
     def doubts(self) -> List[str]:
         """What is doubtful, in words; with any the command line ends with exit code 3."""
     @property
+    def doubted(self) -> List[Dict[str, Any]]:
+        """The same for programs: dicts of `subject` (a word), `p`, `moves` and `words`; None where a number is not known."""
+    @property
     def suspected(self) -> List[Dict[str, Any]]:
         """What the input may be in truth where the result is in doubt, first what explains it best: `kind`, `what` and `rms_px`, or None there."""
     @property

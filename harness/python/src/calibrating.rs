@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
-    BoardShape, Calibration as Solved, CalibrationError as Unsolved, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve, prepare,
-    suspected,
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve,
+    prepare, suspected,
 };
 use calibench_exchange::NamedCamera;
 use calibench_judge::BENT;
 use calibench_model::Pose as Exterior;
-use calibench_report::calibration::summary;
+use calibench_report::calibration::{summary, warnings};
 use nalgebra::DMatrix;
 use numpy::PyArray2;
 use pyo3::IntoPyObjectExt;
@@ -46,11 +46,15 @@ struct Done {
     used: Vec<Vec<bool>>,
     sigma0: Option<f64>,
     rms_px: f64,
-    doubts: Vec<String>,
+    doubts: Vec<Doubted>,
     /// Word, what it may be, px RMS then.
     suspected: Vec<Suspect>,
+    warnings: Vec<String>,
     summary: String,
 }
+
+/// Subject, probability of chance, by how many standard deviations the camera moves, in words.
+type Doubted = (String, Option<f64>, Option<f64>, String);
 
 type Suspect = (String, String, Option<f64>);
 
@@ -118,7 +122,21 @@ impl Calibration {
     /// What is doubtful, in words; with any the command line ends with exit code 3.
     #[getter]
     fn doubts(&self) -> Vec<String> {
-        self.done.doubts.clone()
+        self.done.doubts.iter().map(|(.., words)| words.clone()).collect()
+    }
+
+    /// The same for programs: dicts of `subject` (a word), `p`, `moves` and `words`; None where a number is not known.
+    #[getter]
+    fn doubted<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let one = |(subject, p, moves, words): &Doubted| {
+            let found = PyDict::new(py);
+            found.set_item("subject", subject)?;
+            found.set_item("p", p)?;
+            found.set_item("moves", moves)?;
+            found.set_item("words", words)?;
+            Ok(found)
+        };
+        self.done.doubts.iter().map(one).collect()
     }
 
     /// What the input may be in truth where the result is in doubt, first what explains it best: dicts of `kind`, `what` and `rms_px`, or None there.
@@ -137,7 +155,7 @@ impl Calibration {
     /// What is to be known and is no doubt: what the summary calls warnings.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.done.summary.lines().filter_map(|line| line.trim().strip_prefix("warning: ")).map(in_python).collect()
+        self.done.warnings.clone()
     }
 
     /// What the command line prints.
@@ -229,7 +247,7 @@ pub fn calibrate(
     })?;
     let (named, done) = done.map_err(|error| CalibrationError::new_err(in_python(&error)))?.map_err(input)?;
     let suspicions = done.suspected.iter().map(|(_, what, _)| format!("suspected: {what}"));
-    for text in done.doubts.iter().cloned().chain(suspicions) {
+    for text in done.doubts.iter().map(|(.., words)| words.clone()).chain(suspicions) {
         doubt(py, &text)?;
     }
     Ok(Calibration { camera: Py::new(py, Camera::new(named))?, done })
@@ -277,11 +295,17 @@ fn done(calibration: &Solved<'_>, suspects: Vec<Suspected>, names: &[String], bo
         used,
         sigma0: solution.sigma0(),
         rms_px: calibration.rms_px(),
-        doubts: calibration.doubts().into_iter().map(in_python).collect(),
+        doubts: calibration.doubts().iter().map(doubted).collect(),
         suspected: suspects.into_iter().map(|found| (found.kind.to_owned(), in_python(&found.what), found.rms_px)).collect(),
+        warnings: warnings(calibration).iter().map(|words| in_python(words)).collect(),
         summary: summary(calibration),
     };
     Ok((calibration.named_camera(0)?, done))
+}
+
+fn doubted(doubt: &Doubt) -> Doubted {
+    let finding = doubt.finding;
+    (doubt.subject.name().to_owned(), finding.map(|found| found.p), finding.and_then(|found| found.moves), in_python(&doubt.words))
 }
 
 /// The camera and all fields of [`Done`], in their order.
@@ -295,8 +319,7 @@ type State<'py> = (
     Vec<Vec<bool>>,
     Option<f64>,
     f64,
-    Vec<String>,
-    Vec<Suspect>,
+    (Vec<Doubted>, Vec<Suspect>, Vec<String>),
     String,
 );
 
@@ -304,20 +327,21 @@ impl Pickled for Calibration {
     const CLASS: &'static str = "Calibration";
 
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, suspected, summary, .. } = &self.done;
+        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, suspected, warnings, summary, .. } = &self.done;
         let poses = poses.iter().map(|pose| Py::new(py, Pose(*pose))).collect::<PyResult<Vec<_>>>()?;
         let (covariance, residuals) = (of_matrix(py, covariance)?, self.residuals(py)?);
-        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, doubts, suspected, summary)
+        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, (doubts, suspected, warnings), summary)
             .into_bound_py_any(py)
     }
 
     fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, summary): State<'_> =
-            state.extract()?;
+        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, (doubts, suspected, warnings), summary): State<
+            '_,
+        > = state.extract()?;
         let covariance = matrix(&covariance)?;
         let residuals = residuals.iter().map(|image| rows(image, "residuals")).collect::<PyResult<_>>()?;
         let poses = poses.iter().map(|pose| pose.get().0).collect();
-        let done = Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, summary };
+        let done = Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, warnings, summary };
         Ok(Self { done, camera })
     }
 }

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use csv::StringRecord;
 
 use crate::cells::{Cells, RecordError, open, write_row};
+use crate::figures::{FigureName, FigureNames, Group};
 use crate::interned::Names;
 use crate::once::{Once, Shared};
 use crate::points::RunInfo;
-use crate::results::MethodInfo;
-use crate::results::{Calibrated, Figure, Group};
+use crate::results::{Calibrated, Figure, MethodInfo};
 
 /// The columns of the file.
 pub const COLUMNS: [&str; 13] =
@@ -65,7 +65,7 @@ impl<W: Write> CalibrationWriter<W> {
     fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {
         let [sigma, error] = [figure.sigma, figure.error].map(|number| number.map_or_else(String::new, spread));
         let value = value(figure.value);
-        self.row(trial, one, figure.group, &figure.name, [&value, &sigma, &error], figure.unit, ["adjusted", ""])
+        self.row(trial, one, figure.name.group(), figure.name.text(), [&value, &sigma, &error], figure.unit, ["adjusted", ""])
     }
 
     fn failure(&mut self, trial: &str, one: &Calibrated, group: Group, why: &str) -> Result<(), csv::Error> {
@@ -123,10 +123,8 @@ pub struct Row {
     pub set: Arc<str>,
     /// The group.
     pub group: Group,
-    /// The name within the group.
-    pub name: Arc<str>,
-    /// Value, sigma and error, where they are; the reason of a failure otherwise.
-    pub figure: Result<Numbers, String>,
+    /// The figure with value, sigma and error, where they are; the reason of a failure otherwise.
+    pub figure: Result<(FigureName, Numbers), String>,
     /// The unit of the three; empty for what has none.
     pub unit: Arc<str>,
     /// The seed of the run.
@@ -169,33 +167,43 @@ pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<RunInfo, Reco
 struct Known {
     methods: Names,
     sets: Names,
-    figures: Names,
+    figures: FigureNames,
     units: Names,
     once: Once<4>,
-    unit_of: HashMap<(Group, usize), Arc<str>>,
+    unit_of: HashMap<usize, Arc<str>>,
 }
 
 impl Known {
     fn row(&mut self, cells: &Cells<'_>) -> Result<Row, RecordError> {
-        let group = Group::ALL.iter().find(|(_, name)| *name == cells.text(4)).ok_or_else(|| cells.bad(4))?.0;
-        let figure = match cells.text(10) {
-            "adjusted" => Ok(Numbers { value: cells.number(6)?, sigma: cells.optional_number(7)?, error: cells.optional_number(8)? }),
-            "failed" => Err(cells.text(11).to_owned()),
+        let group = Group::named(cells.text(4)).ok_or_else(|| cells.bad(4))?;
+        let (place, figure) = match cells.text(10) {
+            "adjusted" => {
+                let numbers = Numbers { value: cells.number(6)?, sigma: cells.optional_number(7)?, error: cells.optional_number(8)? };
+                let (place, name) = self.figures.get(group, cells.text(5)).map_err(|unknown| cells.wrong(&unknown.to_string()))?;
+                (place, Ok((name, numbers)))
+            }
+            // What failed is no figure: one place for each group.
+            "failed" => (usize::MAX - group as usize, Err(cells.text(11).to_owned())),
             _ => return Err(cells.bad(10)),
         };
-        let (method, set, name) = (self.methods.get(cells.text(2)), self.sets.get(cells.text(3)), self.figures.get(cells.text(5)));
+        let (method, set) = (self.methods.get(cells.text(2)), self.sets.get(cells.text(3)));
         let (trial, unit) = (cells.parse(1)?, self.units.get(cells.text(9)));
         self.once.trial(cells, 1, trial)?;
         let address = |name: &Arc<str>| name.as_ptr().addr();
-        if !self.once.is_new([address(&method), address(&set), group as usize, address(&name)]) {
-            return Err(cells.wrong(&format!("`{method}` says twice what {} `{name}` of set `{set}` is in trial {trial}", group.name())));
+        if !self.once.is_new([address(&method), address(&set), group as usize, place]) {
+            let (group, name) = (group.name(), cells.text(5));
+            return Err(cells.wrong(&format!("`{method}` says twice what {group} `{name}` of set `{set}` is in trial {trial}")));
         }
-        if figure.is_ok() {
-            let first = self.unit_of.entry((group, address(&name))).or_insert_with(|| unit.clone());
+        if let Ok((name, _)) = &figure {
+            let units = name.quantity().entry().units;
+            if !units.have(&unit) {
+                return Err(cells.other(9, &units.text()));
+            }
+            let first = self.unit_of.entry(place).or_insert_with(|| unit.clone());
             if *first != unit {
                 return Err(cells.other(9, first));
             }
         }
-        Ok(Row { trial, method, set, group, name, figure, unit, seed: cells.parse(12)? })
+        Ok(Row { trial, method, set, group, figure, unit, seed: cells.parse(12)? })
     }
 }

@@ -6,6 +6,7 @@ pub mod compressor;
 pub mod description;
 mod digits;
 mod errors;
+pub mod figures;
 mod interned;
 pub mod judgement;
 mod limited;

@@ -40,8 +40,6 @@ pub fn kept_image(folder: &Path, view: &str) -> PathBuf {
 
 /// The set of figures under which counts of detections stand.
 pub const DETECTION: &str = "detection";
-/// How the names of these counts begin.
-pub const DETECTED: &str = "board/";
 
 /// Under which view the picture of a step of recognition in view `view` is kept.
 pub fn recognition_step(view: &str, step: &str) -> String {

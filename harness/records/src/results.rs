@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use calibench_model::{Measurement, PixelPoint, Rejection};
 
-use crate::names::DETECTED;
+use crate::figures::{FigureName, Kind};
 
 /// A point more than this far from the truth, px, is lost: something else was measured.
 pub const LOST: f64 = 1.0;
@@ -99,53 +99,11 @@ impl Outcome {
     }
 }
 
-/// What a figure is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Group {
-    /// A parameter of the interior orientation, by name.
-    Iop,
-    /// A parameter of an exterior orientation, as in `6/phi`.
-    Eop,
-    /// The adjustment as a whole: sigma0, redundancy, iterations, image points.
-    Network,
-    /// The camera over the frame: its rms distance from the true one after the best rotation.
-    Frame,
-    /// The second step: errors of check points.
-    Check,
-    /// Root mean square residual of an image, by its name.
-    Residual,
-    /// A residual of the first trial, as in `6/left/3/x`.
-    Point,
-    /// A coordinate of an object point in the first trial, as in `left/3/Z`.
-    Object,
-}
-
-impl Group {
-    /// All groups with their names in files.
-    pub const ALL: [(Self, &'static str); 8] = [
-        (Self::Iop, "iop"),
-        (Self::Eop, "eop"),
-        (Self::Network, "network"),
-        (Self::Frame, "frame"),
-        (Self::Check, "check"),
-        (Self::Residual, "residual"),
-        (Self::Point, "point"),
-        (Self::Object, "object"),
-    ];
-
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, name)| name)
-    }
-}
-
 /// A figure of an adjustment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What it is about.
-    pub group: Group,
-    /// Its name within the group.
-    pub name: Arc<str>,
+    /// What it is a value of.
+    pub name: FigureName,
     /// Its value, in [`Self::unit`].
     pub value: f64,
     /// Its standard deviation as the adjustment gives it, with the estimated variance factor, in the same unit.
@@ -158,9 +116,15 @@ pub struct Figure {
 
 impl Figure {
     /// A figure of which neither standard deviation nor error is known; `unit` is that of `value`.
-    pub fn plain(group: Group, name: impl Into<Arc<str>>, value: f64, unit: &'static str) -> Self {
-        Self { group, name: name.into(), value, sigma: None, error: None, unit }
+    pub fn plain(name: impl Into<FigureName>, value: f64, unit: &'static str) -> Self {
+        Self { name: name.into(), value, sigma: None, error: None, unit }
     }
+}
+
+/// The figure of this name, if it is among `figures`.
+pub fn find(figures: &[Figure], name: impl Into<FigureName>) -> Option<&Figure> {
+    let name = name.into();
+    figures.iter().find(|figure| figure.name == name)
 }
 
 /// The adjustment of one set of parameters to one method's points of one trial.
@@ -177,9 +141,9 @@ pub struct Calibrated {
 }
 
 impl Calibrated {
-    /// Whether these are counts of what a detector found, and no adjustment: its points stand beside them.
-    pub fn is_count(&self) -> bool {
-        self.outcome.as_ref().is_ok_and(|figures| !figures.is_empty() && figures.iter().all(|figure| figure.name.starts_with(DETECTED)))
+    /// What kind of result it is: as its figures say that one kind alone has; of an adjustment that failed, and of one with none of these, nothing is known.
+    pub fn kind(&self) -> Option<Kind> {
+        self.outcome.iter().flatten().find_map(|figure| figure.name.quantity().entry().kind)
     }
 }
 
@@ -239,14 +203,5 @@ mod tests {
         assert_eq!((unknown.is_lost(), unknown.kept_error(), unknown.position()), (false, None, Some(PixelPoint::new(1.0, 2.0))));
         let rejected = Outcome::Rejected(Rejection::Border);
         assert_eq!((rejected.is_lost(), rejected.kept_error(), rejected.position()), (false, None, None));
-    }
-
-    #[test]
-    fn every_group_has_its_own_name() {
-        for (group, name) in Group::ALL {
-            assert_eq!(Group::ALL.iter().filter(|(_, other)| *other == name).count(), 1);
-            assert_eq!(group.name(), name);
-        }
-        assert_eq!((Group::Iop.name(), Group::Check.name()), ("iop", "check"));
     }
 }

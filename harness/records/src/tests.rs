@@ -5,9 +5,10 @@ use std::io::{self, Write};
 use calibench_model::{PixelPoint, Rejection};
 
 use crate::adjustments::{self, CalibrationWriter};
+use crate::figures::Quantity;
 use crate::judgement::{Row, read_rows, write_rows};
 use crate::points::{RecordWriter, RunInfo, read_records};
-use crate::results::{Calibrated, Figure, Group, MethodInfo, Outcome, PointResult, Trial};
+use crate::results::{Calibrated, Figure, MethodInfo, Outcome, PointResult, Trial};
 use crate::theory;
 
 fn run() -> RunInfo {
@@ -48,8 +49,8 @@ fn records_of_points() {
 
 #[test]
 fn records_of_adjustments() {
-    let iop = Figure { group: Group::Iop, name: "c".into(), value: 16.55, sigma: Some(0.0125), error: Some(-1.0 / 3.0), unit: "mm" };
-    let figures = vec![iop, Figure::plain(Group::Point, "6/left/3/x", -0.5, "px")];
+    let iop = Figure { name: Quantity::Parameter.of(&["c"]), value: 16.55, sigma: Some(0.0125), error: Some(-1.0 / 3.0), unit: "mm" };
+    let figures = vec![iop, Figure::plain(Quantity::ResidualX.of(&["6", "left/3"]), -0.5, "px")];
     let all = [
         Calibrated { method: 1, set: 0, outcome: Ok(figures), check_failed: Some("image 6: no points".into()) },
         Calibrated { method: 2, set: 1, outcome: Err("no convergence, sorry".into()), check_failed: None },
@@ -61,7 +62,8 @@ fn records_of_adjustments() {
     let mut rows = Vec::new();
     adjustments::read(&bytes[..], |row| rows.push(row)).unwrap();
     assert_eq!((rows.len(), rows[0].trial, &*rows[0].set, rows[3].figure.clone()), (4, 7, "c,x0", Err("no convergence, sorry".into())));
-    let c = rows[0].figure.clone().unwrap();
+    let (name, c) = rows[0].figure.clone().unwrap();
+    assert_eq!((name.quantity(), name.text(), name.group()), (Quantity::Parameter, "c", rows[0].group));
     assert_eq!((c.value, c.sigma), (16.55, Some(0.0125)));
     assert!((c.error.unwrap() + 1.0 / 3.0).abs() < 1e-6);
     insta::assert_snapshot!(text(bytes));
@@ -113,12 +115,14 @@ fn adjustments_that_do_not_belong_together_are_refused() {
         ("s,2,m,c,iop,c,1,2,3,px,adjusted,,1", "line 4: column `unit` holds `px`, expected `mm`"),
         ("z,1,m,c,iop,x0,1,2,3,mm,adjusted,,1", "line 4: column `scenario` holds `z`, expected `s`"),
         ("s,1,m,c,iop,x0,1,2,3,mm,adjusted,,2", "line 4: column `seed` holds `2`, expected `1`"),
+        ("s,1,m,c,network,sigma,1,,,px,adjusted,,1", "line 4: no figure of `network` is called `sigma`: is `sigma0` meant?"),
+        ("s,1,m,c,check,rmse_xy,1,,,px,adjusted,,1", "line 4: column `unit` holds `px`, expected `object unit`"),
     ] {
         let text = format!("{}\n{first}{row}\n", adjustments::COLUMNS.join(","));
         let error = adjustments::read(text.as_bytes(), |_| ()).unwrap_err().to_string();
         assert!(error.contains(expected), "{row}: {error}");
     }
-    for row in ["s,1,n,c,iop,c,1,2,3,mm,adjusted,,1", "s,1,m,d,iop,c,1,2,3,mm,adjusted,,1", "s,1,m,c,eop,c,1,2,3,m,adjusted,,1"] {
+    for row in ["s,1,n,c,iop,c,1,2,3,mm,adjusted,,1", "s,1,m,d,iop,c,1,2,3,mm,adjusted,,1", "s,1,m,c,eop,6/X0,1,2,3,m,adjusted,,1"] {
         let text = format!("{}\n{first}{row}\n", adjustments::COLUMNS.join(","));
         assert_eq!(adjustments::read(text.as_bytes(), |_| ()).unwrap().scenario, "s", "{row}");
     }

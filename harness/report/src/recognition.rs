@@ -1,7 +1,7 @@
 //! How often a blind recognition was wrong: in one scenario, and over a sweep.
 
+use calibench_records::figures::{FigureName, Quantity};
 use calibench_records::names::cell_folder;
-use calibench_records::results::Group;
 
 use crate::LoadError;
 use crate::load::adjustments::{Summaries, load};
@@ -30,44 +30,50 @@ impl<'a> Counts<'a> {
         Some(Self { found, method: found.methods.first()? })
     }
 
-    fn sum(&self, name: &str) -> f64 {
-        let summary = self.found.of_set(self.method, SET, Group::Network, name);
+    fn sum(&self, figure: FigureName) -> f64 {
+        let summary = self.found.of_set(self.method, SET, figure);
         summary.map_or(0.0, |summary| summary.value.mean().unwrap_or(0.0) * summary.value.count as f64)
     }
 
     /// A share in percent with half its interval over the trials.
-    fn percent(&self, name: &str) -> String {
-        let Some(summary) = self.found.of_set(self.method, SET, Group::Network, name) else { return String::new() };
+    fn percent(&self, figure: FigureName) -> String {
+        let Some(summary) = self.found.of_set(self.method, SET, figure) else { return String::new() };
         let mean = fixed(summary.value.mean().unwrap_or(f64::NAN), 2);
         summary.value.half().filter(|half| *half > 0.0).map_or_else(|| mean.clone(), |half| format!("{mean} ± {}", fixed(half, 2)))
     }
 
-    /// Names of figures that begin so, without that beginning.
-    fn names(&self, begin: &str) -> Vec<String> {
-        let mine = self.found.figures.keys().filter(|(method, set, ..)| method == self.method && set == SET);
-        mine.filter_map(|(.., name)| name.strip_prefix(begin).map(str::to_owned)).collect()
+    /// What the figures of a quantity are of.
+    fn of_quantity(&self, quantity: Quantity) -> impl Iterator<Item = Vec<&'a str>> + use<'a> {
+        let method = self.method;
+        let mine = self.found.figures.keys().filter(move |(m, set, name)| m == method && set == SET && name.quantity() == quantity);
+        mine.map(|(.., name)| name.parts())
     }
 
     /// Classifiers and groups of images.
     fn lists(&self) -> (Vec<String>, Vec<String>) {
-        let mut classifiers: Vec<String> = self.names("").iter().filter_map(|name| Some(name.split_once('/')?.0.to_owned())).collect();
+        let all: Vec<Vec<&str>> = self.of_quantity(Quantity::SeenImages).collect();
+        let mut classifiers: Vec<String> = all.iter().map(|parts| parts[0].to_owned()).collect();
         classifiers.dedup();
-        let mut images = classifiers.first().map(|first| self.names(&format!("{first}/images/"))).unwrap_or_default();
+        let mut images: Vec<String> =
+            all.iter().filter(|parts| Some(parts[0]) == classifiers.first().map(String::as_str)).map(|parts| parts[1].to_owned()).collect();
         images.sort();
         (classifiers, images)
     }
 
     /// The cells of a row.
     fn row(&self, classifier: &str, images: &str) -> Vec<String> {
-        let count = |what: &str| self.sum(&format!("{classifier}/{what}/{images}"));
-        let of = |part: &str, whole: &str| {
+        let count = |quantity: Quantity| self.sum(quantity.of(&[classifier, images]));
+        let of = |part: Quantity, whole: Quantity| {
             let whole = count(whole);
             if whole > 0.0 { fixed(100.0 * count(part) / whole, 2) } else { String::new() }
         };
-        let mut row = vec![format!("{:.0} of {:.0}", count("grids"), count("images")), format!("{:.0}", count("targets"))];
-        row.extend([of("labelled", "targets"), of("wrong labels", "labels")]);
+        let mut row = vec![
+            format!("{:.0} of {:.0}", count(Quantity::SeenGrids), count(Quantity::SeenImages)),
+            format!("{:.0}", count(Quantity::SeenTargets)),
+        ];
+        row.extend([of(Quantity::Labelled, Quantity::SeenTargets), of(Quantity::WrongLabels, Quantity::Labels)]);
         for group in GROUPS {
-            let share = |how: &str| self.percent(&format!("{classifier}/{how} wrong, %, {group}/{images}"));
+            let share = |how: &str| self.percent(Quantity::WrongKindsPercent.of(&[classifier, how, group, images]));
             row.push(format!("{} / {}", share("single"), share("joint")));
         }
         row
@@ -104,12 +110,13 @@ fn confusions(counts: &Counts<'_>, classifiers: &[String]) -> String {
     let mut lines = String::new();
     for classifier in classifiers {
         let mut kinds: Vec<(String, f64)> = Vec::new();
-        for name in counts.names(&format!("{classifier}/joint, ")) {
-            let Some((what, _)) = name.split_once('/') else { continue };
-            let count = counts.sum(&format!("{classifier}/joint, {name}"));
-            match kinds.iter_mut().find(|(known, _)| known == what) {
+        let mine = counts.of_quantity(Quantity::TakenFor).filter(|parts| parts[..2] == [classifier, "joint"]);
+        for parts in mine {
+            let what = format!("{} taken for {}", parts[2], parts[3]);
+            let count = counts.sum(Quantity::TakenFor.of(&parts));
+            match kinds.iter_mut().find(|(known, _)| *known == what) {
                 Some((_, sum)) => *sum += count,
-                None => kinds.push((what.to_owned(), count)),
+                None => kinds.push((what, count)),
             }
         }
         let all: Vec<String> = kinds.iter().map(|(what, count)| format!("{what} {count:.0} times")).collect();

@@ -6,11 +6,21 @@ use std::collections::{BTreeMap, HashMap};
 
 use calibench_measure::finder::Named;
 use calibench_model::{PixelPoint, Rejection};
-use calibench_records::names::DETECTED;
-use calibench_records::results::{Calibrated, Figure, Group, LOST};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Calibrated, Figure, LOST};
 
 /// How many of what.
-type Counts = BTreeMap<&'static str, u64>;
+type Counts = BTreeMap<Quantity, u64>;
+
+/// What is counted of an image in which a board was found; none of it where none was.
+const COUNTED: [Quantity; 6] = [
+    Quantity::BoardGrids,
+    Quantity::BoardLabels,
+    Quantity::BoardLabelled,
+    Quantity::BoardNotExpected,
+    Quantity::BoardWrongLabels,
+    Quantity::BoardOff,
+];
 
 /// Counts by method.
 #[derive(Clone, Debug, Default)]
@@ -28,13 +38,13 @@ impl TruePlaces<'_> {
     }
 
     /// What a found point is called in the records.
-    fn judged(&self, name: &str, at: PixelPoint) -> &'static str {
+    fn judged(&self, name: &str, at: PixelPoint) -> Quantity {
         let near = |place: &PixelPoint| place.distance(at) <= LOST;
         match self.all.get(name).filter(|(place, _)| near(place)) {
-            Some((_, true)) => "labelled",
-            Some((_, false)) => "not expected",
-            None if self.all.values().any(|(place, _)| near(place)) => "wrong labels",
-            None => "off",
+            Some((_, true)) => Quantity::BoardLabelled,
+            Some((_, false)) => Quantity::BoardNotExpected,
+            None if self.all.values().any(|(place, _)| near(place)) => Quantity::BoardWrongLabels,
+            None => Quantity::BoardOff,
         }
     }
 }
@@ -43,13 +53,13 @@ impl Tally {
     /// Adds what `method` found in an image.
     pub fn image(&mut self, method: usize, found: &Result<Named<'_>, Rejection>, truth: &TruePlaces<'_>) {
         let counts = self.0.entry(method).or_default();
-        let mut add = |what: &'static str, count: usize| *counts.entry(what).or_default() += count as u64;
-        add("images", 1);
-        add("targets", truth.expected());
-        ["grids", "labels", "labelled", "not expected", "wrong labels", "off"].into_iter().for_each(|what| add(what, 0));
+        let mut add = |what: Quantity, count: usize| *counts.entry(what).or_default() += count as u64;
+        add(Quantity::BoardImages, 1);
+        add(Quantity::BoardTargets, truth.expected());
+        COUNTED.into_iter().for_each(|what| add(what, 0));
         let Some(found) = found.as_ref().ok().filter(|found| !found.is_empty()) else { return };
-        add("grids", 1);
-        add("labels", found.len());
+        add(Quantity::BoardGrids, 1);
+        add(Quantity::BoardLabels, found.len());
         found.iter().for_each(|(name, at)| add(truth.judged(name, *at), 1));
     }
 
@@ -63,7 +73,7 @@ impl Tally {
 
     /// The figures of a trial, by method, under the set of place `set`.
     pub fn calibrated(self, set: usize) -> Vec<Calibrated> {
-        let figure = |(what, count): (&str, u64)| Figure::plain(Group::Network, format!("{DETECTED}{what}/all"), count as f64, "");
+        let figure = |(quantity, count): (Quantity, u64)| Figure::plain(quantity, count as f64, "");
         let of = |(method, counts): (usize, Counts)| Calibrated {
             method,
             set,
@@ -91,7 +101,7 @@ mod tests {
         let one = all.pop().unwrap();
         assert_eq!((all.len(), one.method, one.set), (0, 2, 4));
         let figures = one.outcome.unwrap();
-        move |what| figures.iter().find(|figure| *figure.name == format!("board/{what}/all")).map(|figure| figure.value)
+        move |what| figures.iter().find(|figure| figure.name.text() == format!("board/{what}/all")).map(|figure| figure.value)
     }
 
     #[test]
@@ -106,7 +116,8 @@ mod tests {
             joined.join(one);
         }
         assert_eq!(joined.0, together.0);
-        assert_eq!([joined.0[&2]["images"], joined.0[&2]["off"], joined.0[&5]["images"]], [2, 1, 1]);
+        let count = |method: usize, quantity| joined.0[&method][&quantity];
+        assert_eq!([count(2, Quantity::BoardImages), count(2, Quantity::BoardOff), count(5, Quantity::BoardImages)], [2, 1, 1]);
     }
 
     #[test]

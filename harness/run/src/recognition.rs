@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 use calibench_exchange::{NewFolder, encode_png_densely};
 use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
 use calibench_recognise::{Recognition as Found, SizeGroup, recognise_each};
+use calibench_records::figures::{FigureName, Quantity};
 use calibench_records::names::{kept_image_name, recognition_step};
-use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_records::results::{Calibrated, Figure};
 use calibench_scenario::Recognition;
 use calibench_synth::view::TargetTruth;
 
@@ -19,9 +20,9 @@ const NEAR: f64 = 2.0;
 /// How far a recognised target may lie from its true place, px: beyond, its label is wrong.
 const RIGHT: f64 = 2.0;
 
-/// What is counted, by classifier and name.
+/// What is counted, by classifier and figure.
 #[derive(Clone, Debug, Default)]
-pub struct Counted(BTreeMap<(usize, String), f64>);
+pub struct Counted(BTreeMap<(usize, FigureName), f64>);
 
 /// Where measuring starts: of each target, by its place in the field; and what was counted.
 pub struct Recognised {
@@ -62,26 +63,34 @@ pub fn recognise(plan: &Recognition, image: &Image, view: usize, truth: &[Target
             recognised.starts = targets.map(|t| (t.target, start(t.kind, t.affine, t.position))).collect();
         }
         for (name, _) in plan.images.iter().filter(|(_, images)| images.contains(&view)) {
-            recognised.counted.image(which, name, found.as_ref(), truth, &kinds);
+            recognised.counted.image((which, &plan.classifiers[which]), name, found.as_ref(), truth, &kinds);
         }
     }
     recognised
 }
 
 impl Counted {
-    fn add(&mut self, which: usize, name: String, count: f64) {
-        *self.0.entry((which, name)).or_default() += count;
+    fn add(&mut self, which: usize, figure: FigureName, count: f64) {
+        *self.0.entry((which, figure)).or_default() += count;
     }
 
     /// Adds what others have counted.
     pub fn join(&mut self, other: Self) {
-        other.0.into_iter().for_each(|((which, name), count)| self.add(which, name, count));
+        other.0.into_iter().for_each(|((which, figure), count)| self.add(which, figure, count));
     }
 
-    fn image(&mut self, which: usize, images: &str, found: Option<&Found>, truth: &[TargetTruth], kinds: &[TargetKind]) {
-        self.add(which, format!("images/{images}"), 1.0);
+    fn image(
+        &mut self,
+        (which, classifier): (usize, &str),
+        images: &str,
+        found: Option<&Found>,
+        truth: &[TargetTruth],
+        kinds: &[TargetKind],
+    ) {
+        let of = |quantity: Quantity| quantity.of(&[classifier, images]);
+        self.add(which, of(Quantity::SeenImages), 1.0);
         let Some(found) = found else { return };
-        self.add(which, format!("grids/{images}"), 1.0);
+        self.add(which, of(Quantity::SeenGrids), 1.0);
         let places: Vec<Option<PixelPoint>> = truth.iter().map(|truth| truth.at).collect();
         let nearest = |at: PixelPoint| {
             // Along each axis first: most targets are far off.
@@ -93,22 +102,23 @@ impl Counted {
         let recognised: BTreeMap<usize, PixelPoint> = found.targets.iter().map(|target| (target.target, target.position)).collect();
         for target in &found.targets {
             let right = places[target.target].is_some_and(|at| at.distance(target.position) <= RIGHT);
-            self.add(which, format!("labels/{images}"), 1.0);
-            self.add(which, format!("wrong labels/{images}"), f64::from(u8::from(!right)));
+            self.add(which, of(Quantity::Labels), 1.0);
+            self.add(which, of(Quantity::WrongLabels), f64::from(u8::from(!right)));
         }
         for (blob, target) in found.squares.iter().flat_map(|square| &square.blobs).filter_map(|blob| Some((blob, nearest(blob.position)?)))
         {
-            self.add(which, format!("targets/{images}"), 1.0);
+            self.add(which, of(Quantity::SeenTargets), 1.0);
             let labelled = recognised.get(&target).is_some_and(|at| places[target].is_some_and(|place| place.distance(*at) <= RIGHT));
-            self.add(which, format!("labelled/{images}"), f64::from(u8::from(labelled)));
+            self.add(which, of(Quantity::Labelled), f64::from(u8::from(labelled)));
             let Some(group) = blob.group else { continue };
             let (group, kind) = (group.name(), kinds[target]);
-            self.add(which, format!("{group}/{images}"), 1.0);
+            self.add(which, Quantity::OfSize.of(&[classifier, group, images]), 1.0);
             for (how, taken) in [("single", blob.single), ("joint", blob.joint)] {
                 let wrong = taken.is_some_and(|taken| taken != kind);
-                self.add(which, format!("{how} wrong, {group}/{images}"), f64::from(u8::from(wrong)));
+                self.add(which, Quantity::WrongKinds.of(&[classifier, how, group, images]), f64::from(u8::from(wrong)));
                 if let (true, Some(taken)) = (wrong, taken) {
-                    self.add(which, format!("{how}, {kind} taken for {taken}/{images}"), 1.0);
+                    let of = [classifier, how, kind.name(), taken.name(), images];
+                    self.add(which, Quantity::TakenFor.of(&of), 1.0);
                 }
             }
         }
@@ -117,30 +127,29 @@ impl Counted {
     /// The figures of a trial, under the set of place `set`, beside the first method.
     pub fn calibrated(self, plan: &Recognition, set: usize) -> Calibrated {
         let shares = self.shares(plan);
-        let name = |which: usize, what: &str| format!("{}/{what}", plan.classifiers[which]);
-        let counts = self.0.into_iter().map(|((which, what), count)| Figure::plain(Group::Network, name(which, &what), count, ""));
-        let figures =
-            counts.chain(shares.into_iter().map(|(which, what, share)| Figure::plain(Group::Network, name(which, &what), share, "")));
+        let counts = self.0.into_iter().map(|((_, figure), count)| (figure, count));
+        let figures = counts.chain(shares).map(|(figure, value)| Figure::plain(figure, value, ""));
         Calibrated { method: 0, set, outcome: Ok(figures.collect()), check_failed: None }
     }
 
     /// Shares of all images together and of each group of images.
-    fn shares(&self, plan: &Recognition) -> Vec<(usize, String, f64)> {
-        let get = |which: usize, name: String| self.0.get(&(which, name)).copied().unwrap_or(0.0);
+    fn shares(&self, plan: &Recognition) -> Vec<(FigureName, f64)> {
+        let get = |which: usize, figure: FigureName| self.0.get(&(which, figure)).copied().unwrap_or(0.0);
         let mut shares = Vec::new();
-        for which in 0..plan.recognisers.len() {
+        for (which, classifier) in plan.classifiers.iter().enumerate() {
             for group in SizeGroup::ALL.map(SizeGroup::name) {
                 for how in ["single", "joint"] {
                     let (mut wrong, mut all) = (0.0, 0.0);
                     for (images, _) in &plan.images {
-                        let (w, a) = (get(which, format!("{how} wrong, {group}/{images}")), get(which, format!("{group}/{images}")));
+                        let w = get(which, Quantity::WrongKinds.of(&[classifier, how, group, images]));
+                        let a = get(which, Quantity::OfSize.of(&[classifier, group, images]));
                         (wrong, all) = (wrong + w, all + a);
                         if a > 0.0 {
-                            shares.push((which, format!("{how} wrong, %, {group}/{images}"), 100.0 * w / a));
+                            shares.push((Quantity::WrongKindsPercent.of(&[classifier, how, group, images]), 100.0 * w / a));
                         }
                     }
-                    shares.push((which, format!("{how} wrong, {group}"), wrong));
-                    shares.push((which, format!("{how} of {group}"), all));
+                    shares.push((Quantity::WrongKindsOfAll.of(&[classifier, how, group]), wrong));
+                    shares.push((Quantity::KindsOfAll.of(&[classifier, how, group]), all));
                 }
             }
         }
@@ -152,6 +161,7 @@ impl Counted {
 mod tests {
     use calibench_model::Affine;
     use calibench_recognise::{Blob, GridFound, Recognised, SquareFound};
+    use calibench_records::figures::Group;
     use calibench_synth::view::Visibility;
     use nalgebra::Point3;
 
@@ -203,8 +213,8 @@ mod tests {
 
     fn counted(found: Option<&Found>) -> impl Fn(&str) -> Option<f64> + use<> {
         let mut counted = Counted::default();
-        counted.image(0, "all", found, &truth(), &KINDS);
-        move |name| counted.0.get(&(0, format!("{name}/all"))).copied()
+        counted.image((0, "modern"), "all", found, &truth(), &KINDS);
+        move |name| counted.0.get(&(0, FigureName::parse(Group::Network, &format!("modern/{name}/all")).unwrap())).copied()
     }
 
     #[test]

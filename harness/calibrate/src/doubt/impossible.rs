@@ -6,8 +6,8 @@ use calibench_adjust::ImageObservation;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Fold, Ray, fold, implausible};
 
-use crate::Calibration;
 use crate::placed::{cropped, in_use, is_outside};
+use crate::{Calibration, Doubt, Subject};
 
 /// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
@@ -18,15 +18,19 @@ const CIRCLE: f64 = 75.0;
 const DIRECTIONS: u32 = 16;
 const INSIDE: f64 = 0.98;
 
-/// What is wrong for sure, in words; and folds where a fisheye may see nothing more. Of large residuals only where no check has found their cause.
-pub(super) fn found(calibration: &Calibration<'_>) -> (Vec<String>, Vec<String>) {
+/// What is wrong for sure; and folds where a fisheye may see nothing more, in words. Of large residuals only where no check has found their cause.
+pub(super) fn found(calibration: &Calibration<'_>) -> (Vec<Doubt>, Vec<String>) {
     let explained = calibration.checked.iter().any(|checked| checked.doubt().is_some());
-    let mut found: Vec<String> = outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).collect();
+    let mut found: Vec<Doubt> = outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).collect();
     let mut rims = Vec::new();
     for camera in 0..calibration.cameras() {
         if let Some((fold, angle)) = fold_of(calibration.camera(camera)) {
-            let to = if angle < CIRCLE.to_radians() { &mut found } else { &mut rims };
-            to.push(folded(fold, angle, &calibration.of(camera)));
+            let words = folded(fold, angle, &calibration.of(camera));
+            if angle < CIRCLE.to_radians() {
+                found.push(Doubt::of_camera(Subject::Fold, camera, words));
+            } else {
+                rims.push(words);
+            }
         }
         found.extend(of_no_lens(calibration, camera).chain(of_a_crop(calibration, camera)));
     }
@@ -56,25 +60,28 @@ fn folded(fold: Fold, angle: f64, of: &str) -> String {
 }
 
 /// What no lens has, beyond the points too.
-fn of_no_lens(calibration: &Calibration<'_>, camera: usize) -> impl Iterator<Item = String> {
+fn of_no_lens(calibration: &Calibration<'_>, camera: usize) -> impl Iterator<Item = Doubt> {
     let of = calibration.of(camera);
-    implausible(calibration.camera(camera)).into_iter().map(move |fault| format!("the camera{of}: {fault}"))
+    let told = move |fault| Doubt::of_camera(Subject::Implausible, camera, format!("the camera{of}: {fault}"));
+    implausible(calibration.camera(camera)).into_iter().map(told)
 }
 
 /// A principal point in the middle of what the points fill, and not of the frame.
-fn of_a_crop(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+fn of_a_crop(calibration: &Calibration<'_>, camera: usize) -> Option<Doubt> {
     let [across, down] = cropped(calibration, camera)?;
-    Some(format!(
+    let words = format!(
         "the principal point{} lies in the middle of {across:.2} times the width and {down:.2} times the height of the frame, and the image points fill just that: is the size of the images right (--size)?",
         calibration.of(camera)
-    ))
+    );
+    Some(Doubt::of_camera(Subject::Crop, camera, words))
 }
 
 /// Image points in use outside the frame: of another size, or swapped coordinates.
-fn outside(calibration: &Calibration<'_>) -> Option<String> {
+fn outside(calibration: &Calibration<'_>) -> Option<Doubt> {
     let is_outside = |o: &&ImageObservation| is_outside(calibration.camera(calibration.owner(o.image)).size(), o.position);
     let count = in_use(calibration).filter(is_outside).count();
-    (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
+    let words = || format!("{count} image points lie outside the images: is their size right (--size), and are x and y?");
+    (count > 0).then(|| Doubt::of_all(Subject::Frame, words()))
 }
 
 /// The length that half of the residuals reach, so that gross errors do not count, whether they were left out or not; where no operator leaves as much.
@@ -85,10 +92,11 @@ pub(crate) fn half_of(residuals: impl Iterator<Item = [f64; 2]>) -> Option<f64> 
     (half > MOST_PX).then_some(half)
 }
 
-fn far(calibration: &Calibration<'_>) -> Option<String> {
+fn far(calibration: &Calibration<'_>) -> Option<Doubt> {
     half_of(calibration.solution.each_residual().filter_map(|residual| residual.v)).map(|half| {
-        format!(
+        let words = format!(
             "residuals of {half:.1} px and more at half of the points are no operator's: are the columns and rows of the board, the names of points and their object coordinates right, and is the model the lens's?"
-        )
+        );
+        Doubt::of_all(Subject::Residuals, words)
     })
 }

@@ -19,7 +19,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::ended::ended;
 use crate::resampled::MOST;
-use crate::{Calibration, Checked, Finding, OverFrame, Resampled, SHARE, Verdict};
+use crate::{Calibration, Checked, Doubt, Finding, OverFrame, Resampled, SHARE, Subject, Verdict};
 
 /// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
 pub(crate) const ALPHA: f64 = 1e-4;
@@ -87,13 +87,13 @@ impl Calibration<'_> {
         let (gross, structures) = self.allowed_for();
         let (gross, [control, lens, shutter]) = overlap::settled(gross, structures);
         let all = [
-            ("the precision of image points", stated_precision::check(self)),
-            ("gross errors of image points", gross),
-            ("the coordinates of control points", control),
-            ("the lens", lens),
-            ("one pose for all rows of an image", shutter),
+            (Subject::Precision, stated_precision::check(self)),
+            (Subject::GrossErrors, gross),
+            (Subject::Control, control),
+            (Subject::Lens, lens),
+            (Subject::Shutter, shutter),
         ];
-        self.checked = all.map(|(what, verdict)| Checked { what, verdict }).into();
+        self.checked = all.map(|(subject, verdict)| Checked { subject, verdict }).into();
         self.over_frame = (0..self.cameras()).map(|camera| OverFrame::of(self, camera)).collect();
         self.uncertain = uncertain::found(self);
         (self.impossible, self.rims) = impossible::found(self);
@@ -111,15 +111,12 @@ impl Calibration<'_> {
     }
 
     /// The most likely causes of doubt, first the one that explains most; then what cannot be, and what is hardly known.
-    pub fn doubts(&self) -> Vec<&str> {
-        let explains = |checked: &&Checked| match checked.verdict {
-            Verdict::Doubt(Finding { explains, .. }, _) => explains,
-            _ => 0.0,
-        };
-        let mut doubts: Vec<&Checked> = self.checked.iter().filter(|checked| checked.doubt().is_some()).collect();
+    pub fn doubts(&self) -> Vec<Doubt> {
+        let explains = |doubt: &Doubt| doubt.finding.map_or(0.0, |finding| finding.explains);
+        let mut doubts: Vec<Doubt> = self.checked.iter().filter_map(Checked::doubt).collect();
         doubts.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
-        let others = self.impossible.iter().chain(&self.uncertain).map(String::as_str);
-        doubts.into_iter().filter_map(Checked::doubt).chain(others).collect()
+        doubts.extend(self.impossible.iter().chain(&self.uncertain).cloned());
+        doubts
     }
 
     /// The verdict on a network that is adjusted with `more` unknowns.

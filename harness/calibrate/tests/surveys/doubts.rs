@@ -1,7 +1,7 @@
 //! What a calibration says of residuals that its model does not explain.
 
 use calibench_adjust::Use;
-use calibench_calibrate::{BoardShape, Calibration, Checked, Prepared, Settings, Verdict, prepare};
+use calibench_calibrate::{BoardShape, Calibration, Checked, Prepared, Settings, Subject, Verdict, prepare};
 use calibench_exchange::{ControlRow, PointRef, Points};
 use calibench_model::camera::{Camera, CameraModel, OpenCvFisheye};
 use calibench_model::{PixelPoint, Pose};
@@ -23,7 +23,7 @@ fn examined<T>(prepared: &Prepared, read: impl FnOnce(&Calibration<'_>) -> T) ->
 }
 
 fn doubts(prepared: &Prepared) -> Vec<String> {
-    examined(prepared, |calibration| calibration.doubts().into_iter().map(str::to_owned).collect())
+    examined(prepared, |calibration| calibration.doubts().into_iter().map(|doubt| doubt.words).collect())
 }
 
 fn with(points: &Points, change: impl Fn(usize, &mut PointRef<'_>)) -> Points {
@@ -58,8 +58,8 @@ fn sound_calibrations_are_not_doubted() {
         });
         let (below, of) = p.fold((0, 0), |(below, of), p| (below + i32::from(p < 0.1), of + 1));
         // Sixteen to 84 of 500 are five standard deviations. Priors hold the coefficients of a richer lens: it explains less than as many free unknowns.
-        let least = if all[0][check].what == "the lens" { 0 } else { of / 10 - 34 };
-        assert!(of > 400 && (least..of / 10 + 34).contains(&below), "{}: {below} of {of} below 0.1", all[0][check].what);
+        let least = if all[0][check].subject == Subject::Lens { 0 } else { of / 10 - 34 };
+        assert!(of > 400 && (least..of / 10 + 34).contains(&below), "{}: {below} of {of} below 0.1", all[0][check].subject.what());
     }
 }
 
@@ -202,7 +202,7 @@ fn up_to_a_third_of_gross_errors_is_left_out_or_held_back() {
             let (left_out, error, sigma, doubts) = examined(&prepared, |calibration| {
                 let error = calibration.camera(0).parameters()[0].value - 1450.0;
                 let left_out = calibration.found.iter().filter(|found| found.left_out).count();
-                let doubts: Vec<String> = calibration.doubts().iter().map(|doubt| (*doubt).to_owned()).collect();
+                let doubts: Vec<String> = calibration.doubts().into_iter().map(|doubt| doubt.words).collect();
                 (left_out, error, calibration.covariances.interior[(0, 0)].sqrt(), doubts)
             });
             println!("{name} {share}: {left_out} of {wrong}, {error} +- {sigma} {doubts:?}");

@@ -69,7 +69,7 @@ fn the_standard_deviation_over_the_frame_is_that_of_trials() {
 fn a_camera_that_is_hardly_known_is_in_doubt() {
     let doubts = |limit_px: Option<f64>| {
         let read = |calibration: &Calibration<'_>| {
-            (calibration.over_frame[0].unwrap(), calibration.doubts().into_iter().map(str::to_owned).collect::<Vec<_>>())
+            (calibration.over_frame[0].unwrap(), calibration.doubts().into_iter().map(|doubt| doubt.words).collect::<Vec<_>>())
         };
         calibrated(&noisy(inclined(0.03), 1), &Settings { limit_px, ..settings("opencv5") }, read).unwrap()
     };

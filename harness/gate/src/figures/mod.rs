@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use calibench_records::results::Group;
+use calibench_records::figures::{FigureName, Group};
 
 use super::adjusted::{FigureKey, Numbers};
 use super::baseline_file::{BaselineError, Kind, Row};
@@ -97,8 +97,8 @@ impl Kept for FigureSums {
     fn rows(&self) -> Vec<Vec<String>> {
         let digits = |value: f64| format!("{value:.9e}");
         let optional = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6e}"));
-        let row = |((set, group, name), sum): (&FigureKey, &FigureSum)| {
-            let [set, group, name] = [(set + 1).to_string(), group.name().to_owned(), name.to_string()];
+        let row = |((set, figure), sum): (&FigureKey, &FigureSum)| {
+            let [set, group, name] = [(set + 1).to_string(), figure.group().name().to_owned(), figure.to_string()];
             vec![
                 set,
                 group,
@@ -114,9 +114,10 @@ impl Kept for FigureSums {
     }
 
     fn add(&mut self, row: &Row<'_>) -> Result<(), BaselineError> {
-        let group = Group::ALL.iter().find(|(_, name)| *name == row.text(3)).ok_or_else(|| row.wrong(3, "expected a group of figures"))?.0;
+        let group = Group::named(row.text(3)).ok_or_else(|| row.wrong(3, "expected a group of figures"))?;
+        let figure = FigureName::parse(group, row.text(4)).map_err(|unknown| row.wrong(4, &unknown.to_string()))?;
         let set: usize = row.parse(2)?;
-        let key = (set.checked_sub(1).ok_or_else(|| row.wrong(2, "expected 1 or more"))?, group, row.text(4).into());
+        let key = (set.checked_sub(1).ok_or_else(|| row.wrong(2, "expected 1 or more"))?, figure);
         let [count, mean, scatter] = [5, 6, 7];
         let sum = FigureSum {
             count: row.parse(count)?,
@@ -131,20 +132,21 @@ impl Kept for FigureSums {
     fn compare(&self, now: &Self, finding: &dyn Fn(Verdict, &'static str, String) -> Finding) -> Vec<Finding> {
         let mut findings = Vec::new();
         let mut largest: BTreeMap<(usize, Group), f64> = BTreeMap::new();
-        for ((set, group, _), sum) in self.0.iter().filter(|((_, group, _), _)| is_error(*group)) {
-            let largest = largest.entry((*set, *group)).or_default();
+        for ((set, figure), sum) in self.0.iter().filter(|((_, figure), _)| is_error(figure.group())) {
+            let largest = largest.entry((*set, figure.group())).or_default();
             *largest = largest.max(sum.mean.abs());
         }
         for (key, old) in &self.0 {
-            let name = format!("set {} {} {}", key.0 + 1, key.1.name(), key.2);
+            let (set, group) = (key.0, key.1.group());
+            let name = format!("set {} {} {}", set + 1, group.name(), key.1);
             let Some(new) = now.0.get(key) else {
                 findings.push(finding(Verdict::Fails, "figure", "the figure is missing".into()).at(name));
                 continue;
             };
-            let rounding = largest.get(&(key.0, key.1)).map_or(0.0, |largest| NOTHING * largest);
+            let rounding = largest.get(&(set, group)).map_or(0.0, |largest| NOTHING * largest);
             let both_nothing = old.count == new.count && old.is_within(rounding) && new.is_within(rounding);
-            if !both_nothing && !old.same(new, key.1) {
-                findings.extend(judged(key.1, old, new, finding).map(|found| found.at(name.as_str())));
+            if !both_nothing && !old.same(new, group) {
+                findings.extend(judged(group, old, new, finding).map(|found| found.at(name.as_str())));
             }
         }
         let new = now.0.keys().filter(|key| !self.0.contains_key(*key)).count();

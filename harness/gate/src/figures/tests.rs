@@ -1,5 +1,7 @@
 //! Figures of adjustments, summed and judged by hand.
 
+use calibench_records::figures::Quantity;
+
 use super::*;
 use crate::{Cells, Coordinates};
 
@@ -8,7 +10,21 @@ fn numbers(value: f64, error: f64) -> Numbers {
 }
 
 fn sums(group: Group, trials: &[Numbers]) -> FigureSums {
-    FigureSums(BTreeMap::from([((0, group, "c".into()), FigureSum::of(trials.iter()))]))
+    FigureSums(BTreeMap::from([((0, any(group)), FigureSum::of(trials.iter()))]))
+}
+
+/// A figure of each group.
+fn any(group: Group) -> FigureName {
+    match group {
+        Group::Iop => Quantity::Parameter.of(&["c"]),
+        Group::Eop => Quantity::Phi.of(&["6"]),
+        Group::Network => Quantity::Sigma0.into(),
+        Group::Frame => Quantity::OverFrame.into(),
+        Group::Check => Quantity::RmseXy.into(),
+        Group::Residual => Quantity::ImageResidual.of(&["6"]),
+        Group::Point => Quantity::ResidualX.of(&["6", "left/3"]),
+        Group::Object => Quantity::ObjectZ.of(&["left/3"]),
+    }
 }
 
 fn verdicts(old: &FigureSums, new: &FigureSums) -> Vec<(Verdict, &'static str)> {
@@ -86,18 +102,17 @@ fn what_is_zero_but_for_rounding_is_not_worse() {
     let with = |group: Group, small: f64, count: usize| {
         let of = |value: f64| Numbers { value, sigma: None, error: None };
         let mut sums = sums(group, &vec![of(small); count]);
-        let largest = FigureSum::of([of(0.2)].iter());
-        sums.0.insert((0, group, "largest".into()), largest);
+        let largest = if group == Group::Check { Quantity::RmseZ.into() } else { Quantity::Parameter.of(&["x0"]) };
+        sums.0.insert((0, largest), FigureSum::of([of(0.2)].iter()));
         sums
     };
-    for group in [Group::Frame, Group::Check] {
-        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 5e-15, 3)), []);
-        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, -1e-13, 3)), []);
-        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 3e-13, 3)), [(Verdict::Fails, "error")]);
-        assert_eq!(verdicts(&with(group, 3e-13, 3), &with(group, 4e-13, 3)), [(Verdict::Fails, "error")]);
-        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, -0.1, 3)), [(Verdict::Changed, "figure")]);
-        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 1e-15, 2)), [(Verdict::Fails, "adjusted")]);
-    }
+    let check = |small: f64, count: usize| with(Group::Check, small, count);
+    assert_eq!(verdicts(&check(1e-15, 3), &check(5e-15, 3)), []);
+    assert_eq!(verdicts(&check(1e-15, 3), &check(-1e-13, 3)), []);
+    assert_eq!(verdicts(&check(1e-15, 3), &check(3e-13, 3)), [(Verdict::Fails, "error")]);
+    assert_eq!(verdicts(&check(3e-13, 3), &check(4e-13, 3)), [(Verdict::Fails, "error")]);
+    assert_eq!(verdicts(&check(1e-15, 3), &check(-0.1, 3)), [(Verdict::Changed, "figure")]);
+    assert_eq!(verdicts(&check(1e-15, 3), &check(1e-15, 2)), [(Verdict::Fails, "adjusted")]);
     // Alone there is nothing to compare it with; parameters have units of their own.
     let alone = |value: f64| sums(Group::Check, &[Numbers { value, sigma: None, error: None }]);
     assert_eq!(verdicts(&alone(1e-15), &alone(5e-15)), [(Verdict::Fails, "error")]);
@@ -214,9 +229,9 @@ fn fewer_adjustments_fail() {
 
 fn two(first: f64, second: f64) -> MethodTable {
     let mut method = MethodTable::new("1".into());
-    for (set, group, name, value) in [(0, Group::Iop, "c", first), (2, Group::Eop, "6/phi", second)] {
+    for (set, figure, value) in [(0, any(Group::Iop), first), (2, any(Group::Eop), second)] {
         let numbers = |value: f64| Numbers { value, sigma: Some(0.5), error: (set == 0).then_some(0.25) };
-        method.figures.insert((set, group, name.into()), [(0, numbers(value)), (1, numbers(value + 2.0))].into());
+        method.figures.insert((set, figure), [(0, numbers(value)), (1, numbers(value + 2.0))].into());
     }
     method
 }

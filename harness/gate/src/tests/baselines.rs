@@ -9,7 +9,7 @@ use crate::{
     Baselines, Cells, Check, Coordinates, Entry, FigureSums, IndexError, Kept, Measured, MethodTable, Numbers, PointSums, Results, Table,
     Verdicts,
 };
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 
 fn points(dx: f64) -> Table {
     holding(Coordinates::Errors, method((0..20).map(|trial| (trial, "a", measured([dx, 0.0], None)))))
@@ -17,7 +17,7 @@ fn points(dx: f64) -> Table {
 
 fn figures(value: f64) -> Cells<FigureSums> {
     let mut method = MethodTable::new("1".into());
-    method.figures.insert((0, Group::Iop, "c".into()), [(0, Numbers { value, sigma: None, error: None })].into());
+    method.figures.insert((0, Quantity::Parameter.of(&["c"])), [(0, Numbers { value, sigma: None, error: None })].into());
     let mut cells = Cells::new("f/s", "", 7, Coordinates::Errors);
     cells.add("", &holding(Coordinates::Errors, method));
     cells
@@ -149,7 +149,7 @@ fn a_blessing_leaves_what_a_check_accepts() {
     adjusted.images = named(&entries).points;
     for (place, [value, sigma]) in numbers.into_iter().enumerate() {
         let numbers = Numbers { value, sigma: Some(sigma), error: Some(value) };
-        adjusted.figures.insert((place, Group::Iop, "c".into()), (0..3).map(|trial| (trial, numbers)).collect());
+        adjusted.figures.insert((place, Quantity::Parameter.of(&["c"])), (0..3).map(|trial| (trial, numbers)).collect());
     }
     kinds.push(("adjusted", adjusted.clone()));
     kinds.push(("figures alone", MethodTable { points: BTreeMap::default(), images: BTreeMap::default(), ..adjusted }));

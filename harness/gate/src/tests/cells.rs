@@ -2,7 +2,8 @@
 
 use super::{info, point, rejected};
 use crate::{Cells, Coordinates, Finding, ImageSums, PointSums, Table, Verdict};
-use calibench_records::results::{Calibrated, Figure, Group, PointResult, Trial};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Calibrated, Figure, PointResult, Trial};
 
 /// Twelve trials of three targets, with errors that look random within 0.1 px.
 fn table(change: impl Fn(u64, usize, [f64; 2]) -> Option<[f64; 2]>) -> Table {
@@ -152,7 +153,7 @@ fn only_another_version_of_a_library_excuses_a_change() {
 fn image_points_of_adjustments_are_compared() {
     let of = |off: f64| {
         let mut table = Table::new("f/s", 7, Coordinates::Errors, &[info("m", "1")]);
-        let figures = vec![Figure::plain(Group::Frame, "rms", 0.25, "px")];
+        let figures = vec![Figure::plain(Quantity::OverFrame, 0.25, "px")];
         let calibrations = vec![Calibrated { method: 0, set: 0, outcome: Ok(figures), check_failed: None }];
         let points = vec![point(0, "a", [0.1, 0.2]), point(0, "b", [0.3 + off, 0.0])];
         table.add(&Trial { points, calibrations, ..Trial::default() });

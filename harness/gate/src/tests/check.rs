@@ -6,7 +6,7 @@ use crate::{
     ALPHA, Ceilings, Cells, Check, Coordinates, FigureSums, Finding, MethodTable, Numbers, PointSums, Table, Tally, Verdict, Verdicts,
     compare, decide,
 };
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 
 fn verdicts(words: &[&str]) -> Verdicts {
     let cell = |(row, word): (usize, &&str)| (["p/table-1".to_owned(), row.to_string(), "x".to_owned()], (*word).to_owned());
@@ -25,7 +25,7 @@ fn figures(count: usize) -> MethodTable {
     let mut method = MethodTable::new("1".into());
     for index in 0..count {
         let numbers = Numbers { value: 1.0, sigma: None, error: None };
-        method.figures.insert((0, Group::Iop, index.to_string().into()), [(0, numbers)].into());
+        method.figures.insert((0, Quantity::Omega.of(&[&index.to_string()])), [(0, numbers)].into());
     }
     method
 }

@@ -8,7 +8,8 @@ use crate::{
     Verdict, Verdicts, read_baseline, write_baseline,
 };
 use calibench_model::{Measurement, PixelPoint, Rejection};
-use calibench_records::results::{Calibrated, Figure, Group, PointResult, Trial};
+use calibench_records::figures::{FigureName, Group, Quantity};
+use calibench_records::results::{Calibrated, Figure, PointResult, Trial};
 
 fn kept(dx: f64) -> Entry {
     measured([dx, 0.0], None)
@@ -266,7 +267,8 @@ fn counts_of_detections_stand_beside_their_points() {
     };
     let counts = |names: [&str; 4]| {
         let values = [10.0, 8.0, 9.0, 1.0];
-        names.into_iter().zip(values).map(|(name, value)| Figure::plain(Group::Network, name, value, "")).collect::<Vec<_>>()
+        let named = |name: &str| FigureName::parse(Group::Network, name).unwrap();
+        names.into_iter().zip(values).map(|(name, value)| Figure::plain(named(name), value, "")).collect::<Vec<_>>()
     };
     let places = |figures: Vec<Figure>| {
         let mut table = table(Coordinates::Errors, &[info("m", "1")], &[]);
@@ -288,8 +290,8 @@ fn counts_of_detections_stand_beside_their_points() {
 #[test]
 fn adjustments_are_two_points_and_their_figures() {
     let check = |unit, xy: f64, z: f64| {
-        let check = [("rmse_xy", xy), ("rmse_z", z)].map(|(name, value)| Figure::plain(Group::Check, name, value, unit));
-        [Figure::plain(Group::Frame, "rms", 0.25, "px")].into_iter().chain(check).collect::<Vec<_>>()
+        let check = [(Quantity::RmseXy, xy), (Quantity::RmseZ, z)].map(|(quantity, value)| Figure::plain(quantity, value, unit));
+        [Figure::plain(Quantity::OverFrame, 0.25, "px")].into_iter().chain(check).collect::<Vec<_>>()
     };
     let points = |found: &MethodTable| {
         let at = |(place, entry): (&crate::Place, &Entry)| (place.to_string(), entry.coordinates());
@@ -302,7 +304,7 @@ fn adjustments_are_two_points_and_their_figures() {
     let mut both = entries(vec![adjusted(0, check("mm", 0.5, 0.75)), adjusted(1, check("mm", 9.0, 9.0))]);
     assert_eq!(points(&both), two(Some([0.25, 0.0]), Some([0.5, 0.75])), "the first set");
     assert_eq!(both.figures.len(), 6);
-    assert_eq!(both.figures.remove(&(1, Group::Check, "rmse_z".into())).unwrap()[&3].value, 9.0);
+    assert_eq!(both.figures.remove(&(1, Quantity::RmseZ.into())).unwrap()[&3].value, 9.0);
     let failed = Calibrated { outcome: Err("no".into()), ..adjusted(0, Vec::new()) };
     let failed = entries(vec![failed]);
     assert_eq!((points(&failed), failed.counts()), (two(None, None).to_vec(), [0, 0, 2]));
@@ -312,10 +314,10 @@ fn adjustments_are_two_points_and_their_figures() {
     let second = Calibrated { check_failed: Some("no".into()), ..adjusted(0, camera()) };
     assert_eq!(points(&entries(vec![second])), two(Some([0.25, 0.0]), None));
     // Residuals of single points are no figures to compare.
-    let residual = Figure::plain(Group::Point, "6/left/3/x", 0.5, "px");
-    let with = Figure { sigma: Some(0.5), error: Some(0.125), ..Figure::plain(Group::Iop, "c", 30.0, "mm") };
+    let residual = Figure::plain(Quantity::ResidualX.of(&["6", "left/3"]), 0.5, "px");
+    let with = Figure { sigma: Some(0.5), error: Some(0.125), ..Figure::plain(Quantity::Parameter.of(&["c"]), 30.0, "mm") };
     let found = entries(vec![adjusted(0, vec![residual, with])]).figures;
-    assert_eq!(found.keys().cloned().collect::<Vec<_>>(), [(0, Group::Iop, "c".into())]);
+    assert_eq!(found.keys().cloned().collect::<Vec<_>>(), [(0, Quantity::Parameter.of(&["c"]))]);
     let numbers = found.values().next().unwrap()[&3];
     assert_eq!((numbers.value, numbers.sigma, numbers.error), (30.0, Some(0.5), Some(0.125)));
 }

@@ -8,7 +8,8 @@ use crate::pairs::Pairs;
 use crate::point_by_point::{exact, worse_status};
 use crate::{Coordinates, Entry, Finding, Found, MethodTable, Numbers, Place, Table, Verdict};
 use calibench_model::PixelPoint;
-use calibench_records::results::{Group, Outcome, PointResult};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Outcome, PointResult};
 
 fn kept(dx: f64) -> Entry {
     measured([dx, 0.0], None)
@@ -62,7 +63,7 @@ fn a_method_of_figures_alone_is_not_missing() {
     let base = holding(Coordinates::Errors, method([]));
     let mut now = method([]);
     assert!(completeness(&base, &base).is_empty());
-    now.figures.insert((0, Group::Network, "sigma0".into()), [(0, Numbers { value: 1.0, sigma: None, error: None })].into());
+    now.figures.insert((0, Quantity::Sigma0.into()), [(0, Numbers { value: 1.0, sigma: None, error: None })].into());
     assert!(completeness(&base, &holding(Coordinates::Errors, now.clone())).is_empty());
     assert_eq!(said(&completeness(&errors([(0, "a", kept(0.1))]), &holding(Coordinates::Errors, now)))[0].2, "the method has no points");
 }

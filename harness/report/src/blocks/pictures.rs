@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use calibench_records::description::{Blocks, Views};
-use calibench_records::results::Group;
+use calibench_records::figures::{Group, Quantity};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -63,12 +63,12 @@ pub fn stations(views: &Views) -> Option<Canvas> {
 /// Heights over X and over Y, of the first method and block that have them.
 pub fn heights(found: &Summaries, views: &Views) -> Option<Canvas> {
     let places: BTreeMap<&str, [f64; 3]> = views.targets.iter().map(|target| (target.id.as_str(), target.surveyed)).collect();
-    let (method, set) = found.figures.keys().find(|(.., group, _)| *group == Group::Object).map(|(method, set, ..)| (method, set))?;
-    let mine = found.figures.iter().filter(|((m, s, group, _), _)| *group == Group::Object && m == method && s == set);
+    let (method, set) = found.figures.keys().find(|(.., name)| name.group() == Group::Object).map(|(method, set, ..)| (method, set))?;
+    let mine = found.figures.iter().filter(|((m, s, name), _)| name.quantity() == Quantity::ObjectZ && m == method && s == set);
     let points: Vec<([f64; 3], f64, f64)> = mine
         .filter_map(|((.., name), summary)| {
             let first = summary.first?;
-            Some((*places.get(name.strip_suffix("/Z")?)?, first.value, first.sigma.unwrap_or(0.0)))
+            Some((*places.get(*name.parts().first()?)?, first.value, first.sigma.unwrap_or(0.0)))
         })
         .collect();
     let reach = 1.1 * points.iter().flat_map(|(at, ..)| [at[0].abs(), at[1].abs()]).fold(0.0, f64::max);

@@ -1,7 +1,7 @@
 //! Tables of free networks.
 
 use calibench_records::description::Blocks;
-use calibench_records::results::Group;
+use calibench_records::figures::{Group, Quantity};
 
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::{MarkdownTable, fixed};
@@ -9,6 +9,8 @@ use crate::markdown::{MarkdownTable, fixed};
 /// The names under which other figures than those of blocks stand.
 const RESIDUALS: &str = "residuals";
 const RECOGNITION: &str = "recognition";
+/// Digits of sigma0: one more than elsewhere, for it is compared with what operators say of themselves.
+const SIGMA0: usize = 4;
 
 /// A figure's mean over the trials with half its 95 % interval.
 fn mean(summary: Option<&Summary>, digits: usize) -> String {
@@ -25,12 +27,13 @@ fn mean(summary: Option<&Summary>, digits: usize) -> String {
 struct Of<'a>(&'a Summaries, &'a str, &'a str);
 
 impl<'a> Of<'a> {
-    fn get(&self, name: &str) -> Option<&'a Summary> {
-        self.0.of_set(self.1, self.2, Group::Network, name)
+    fn get(&self, quantity: Quantity) -> Option<&'a Summary> {
+        self.0.of_set(self.1, self.2, quantity)
     }
 
-    fn shown(&self, name: &str, digits: usize) -> String {
-        mean(self.get(name), digits)
+    /// With the digits of the catalogue.
+    fn shown(&self, quantity: Quantity) -> String {
+        mean(self.get(quantity), quantity.entry().digits)
     }
 }
 
@@ -41,11 +44,16 @@ pub fn blocks(found: &Summaries) -> String {
     for set in found.sets.iter().filter(|set| *set != RESIDUALS && *set != RECOGNITION) {
         for method in &found.methods {
             let of = Of(found, method, set);
-            let Some(_) = of.get("redundancy") else { continue };
-            let networks = of.get("networks").map_or_else(|| "1".to_owned(), |_| of.shown("networks", 0));
-            let counts = ["images", "points", "observations", "unknowns", "redundancy"].map(|name| of.shown(name, 0));
-            let sigmas =
-                [of.shown("sigma0", 4), of.shown("sigma0 in um", 2), of.shown("gross errors", 1), of.shown("rows over columns", 2)];
+            let Some(_) = of.get(Quantity::Redundancy) else { continue };
+            let networks = of.get(Quantity::Networks).map_or_else(|| "1".to_owned(), |_| of.shown(Quantity::Networks));
+            let counts = [Quantity::Images, Quantity::Points, Quantity::Observations, Quantity::Unknowns, Quantity::Redundancy]
+                .map(|count| of.shown(count));
+            let sigmas = [
+                mean(of.get(Quantity::Sigma0), SIGMA0),
+                of.shown(Quantity::Sigma0Um),
+                of.shown(Quantity::GrossErrors),
+                of.shown(Quantity::RowsOverColumns),
+            ];
             rows.row([set.clone(), format!("`{method}`"), networks].into_iter().chain(counts).chain(sigmas));
         }
     }
@@ -64,9 +72,9 @@ fn bends(found: &Summaries) -> String {
     for set in &found.sets {
         for method in &found.methods {
             let of = Of(found, method, set);
-            if let (Some(along), Some(_)) = (of.get("bend along X"), of.get("bend along Y")) {
+            if let (Some(along), Some(_)) = (of.get(Quantity::BendX), of.get(Quantity::BendY)) {
                 let single = along.value.deviation().map_or_else(String::new, |d| format!(" (a single trial scatters by {})", fixed(d, 3)));
-                let (x, y) = (of.shown("bend along X", 3), of.shown("bend along Y", 3));
+                let (x, y) = (of.shown(Quantity::BendX), of.shown(Quantity::BendY));
                 lines.push_str(&format!("- `{set}`, `{method}`: the object points bend by {x} along X{single} and by {y} along Y.\n"));
             }
         }
@@ -85,11 +93,15 @@ pub fn location(found: &Summaries) -> String {
     for set in &found.sets {
         for method in &found.methods {
             let of = Of(found, method, set);
-            let Some(_) = of.get("error of a coordinate") else { continue };
+            let Some(_) = of.get(Quantity::CoordinateError) else { continue };
             any = true;
-            let sigmas = [("error of a coordinate", 4), ("sigma0", 4), ("own sigma", 4), ("own sigma over sigma0", 2)];
-            let shown = sigmas.map(|(name, digits)| of.shown(name, digits));
-            let shares = [percent(of.get("lost")), percent(of.get("rejected"))];
+            let shown = [
+                of.shown(Quantity::CoordinateError),
+                mean(of.get(Quantity::Sigma0), SIGMA0),
+                of.shown(Quantity::OwnSigma),
+                of.shown(Quantity::OwnSigmaOverSigma0),
+            ];
+            let shares = [percent(of.get(Quantity::Lost)), percent(of.get(Quantity::Rejected))];
             rows.row([set.clone(), format!("`{method}`")].into_iter().chain(shown).chain(shares));
         }
     }
@@ -109,9 +121,9 @@ pub fn residuals(found: &Summaries, told: &Blocks) -> String {
     let mut any = false;
     for method in &found.methods {
         let of = Of(found, method, RESIDUALS);
-        if of.get("pairs").is_some() {
+        if of.get(Quantity::Pairs).is_some() {
             any = true;
-            let shown = [of.shown("pairs", 0), of.shown("correlation within pairs", 3), of.shown("correlation across pairs", 3)];
+            let shown = [Quantity::Pairs, Quantity::CorrelationWithin, Quantity::CorrelationAcross].map(|quantity| of.shown(quantity));
             rows.row([format!("`{method}`")].into_iter().chain(shown));
         }
     }

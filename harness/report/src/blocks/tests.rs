@@ -2,18 +2,19 @@
 
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::Blocks;
+use calibench_records::figures::Group;
 use calibench_records::points::RunInfo;
-use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
+use calibench_records::results::{Calibrated, Figure, MethodInfo};
 use calibench_records::stored::Table;
 
 use super::tables;
 use crate::load::adjustments::{Summaries, load};
-use crate::tests::small::new_table;
+use crate::tests::small::{figure, new_table};
 
 const SETS: [&str; 4] = ["one", "pairs", "residuals", "recognition"];
 
 fn figures(named: &[(&str, f64)]) -> Vec<Figure> {
-    named.iter().map(|(name, value)| Figure::plain(Group::Network, *name, *value, "")).collect()
+    named.iter().map(|(name, value)| figure(Group::Network, name, *value)).collect()
 }
 
 /// `one`: 32 images; sigma0 0.04 and 0.05 px. `pairs`: 16 networks, without a result in the second trial. Correlations of residuals.

@@ -10,16 +10,16 @@ use crate::plain;
 /// What stands first if there is doubt: the most likely cause. It holds names as their files have them.
 pub(super) fn headline(calibration: &Calibration<'_>) -> Option<String> {
     let doubts = calibration.doubts();
-    (!doubts.is_empty()).then(|| format!("doubtful: {}", doubts.join("; ")))
+    (!doubts.is_empty()).then(|| format!("doubtful: {}", doubts.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
 }
 
 /// What was looked for, in a line.
 pub(super) fn fact(calibration: &Calibration<'_>) -> Option<String> {
     let one = |checked: &Checked| match &checked.verdict {
-        Verdict::Untested(_) => format!("{} not tested", checked.what),
-        Verdict::Sound(_) => format!("{} sound", checked.what),
-        Verdict::Slight(..) => format!("{} not quite sound", checked.what),
-        Verdict::Doubt(..) => format!("{} DOUBTFUL", checked.what),
+        Verdict::Untested(_) => format!("{} not tested", checked.subject.what()),
+        Verdict::Sound(_) => format!("{} sound", checked.subject.what()),
+        Verdict::Slight(..) => format!("{} not quite sound", checked.subject.what()),
+        Verdict::Doubt(..) => format!("{} DOUBTFUL", checked.subject.what()),
     };
     let all: Vec<String> = calibration.checked.iter().map(one).collect();
     (!all.is_empty()).then(|| format!("checks: {}", all.join(", ")))
@@ -52,7 +52,7 @@ pub(super) fn section(calibration: &Calibration<'_>) -> String {
             Verdict::Doubt(finding, cause) => (Some(finding), format!("**{}**", escape::markdown(cause))),
         };
         let (p, moves) = finding.map_or_else(Default::default, cells);
-        table.row([checked.what.to_owned(), p, moves, verdict]);
+        table.row([checked.subject.what().to_owned(), p, moves, verdict]);
     }
     format!(
         "\n## What the model may leave out\n\n{}\np: the probability of residuals as uneven by chance. The camera moves by so many of its standard deviations over the \

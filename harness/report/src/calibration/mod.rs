@@ -23,7 +23,7 @@ pub use crate::corners::Pictured;
 pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;
-pub(crate) use warnings::warnings;
+pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.
 pub(crate) fn board_bend(calibration: &Calibration<'_>) -> Option<([f64; 3], [f64; 3])> {

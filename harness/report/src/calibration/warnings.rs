@@ -11,7 +11,7 @@ use crate::plain;
 const OPTIMISTIC: f64 = 1.5;
 
 /// What a user must know.
-pub(crate) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
+pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
     let correlated = calibration.covariances.correlated(CORRELATED);
     let mut warnings: Vec<String> = correlated
@@ -28,7 +28,7 @@ pub(crate) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     }
     let doubts = calibration.doubts();
     let rivals = calibration.prepared.rivals.iter().map(|rival| rival.words(&calibration.of(rival.camera)));
-    warnings.extend(rivals.filter(|words| !doubts.contains(&words.as_str())));
+    warnings.extend(rivals.filter(|words| doubts.iter().all(|doubt| doubt.words != *words)));
     warnings.extend(calibration.rims.iter().cloned());
     warnings.extend(board::warning(calibration));
     warnings.extend(discs::warnings(calibration));

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use calibench_records::names::{DETECTED, DETECTION};
-use calibench_records::results::{Group, Outcome, Trial};
+use calibench_records::figures::Quantity;
+use calibench_records::names::DETECTION;
+use calibench_records::results::{Outcome, Trial};
 use calibench_records::statistics::running::Running;
 
 use super::offsets::Offsets;
@@ -131,10 +132,15 @@ impl Detectors {
     /// What is counted of a detector; `None` of other methods.
     pub fn counted(&self, board: usize, value: usize, method: &str) -> Option<Counted> {
         let counts = self.counts[self.cell(board, value)].as_ref()?;
-        let sum = |what: &str| {
-            let summary = counts.of_set(method, DETECTION, Group::Network, &format!("{DETECTED}{what}/all"))?;
+        let sum = |quantity: Quantity| {
+            let summary = counts.of_set(method, DETECTION, quantity)?;
             Some(summary.value.mean()? * summary.value.count as f64)
         };
-        Some(Counted { images: sum("images")?, boards: sum("grids")?, wrong: sum("wrong labels")?, nowhere: sum("off")? })
+        Some(Counted {
+            images: sum(Quantity::BoardImages)?,
+            boards: sum(Quantity::BoardGrids)?,
+            wrong: sum(Quantity::BoardWrongLabels)?,
+            nowhere: sum(Quantity::BoardOff)?,
+        })
     }
 }

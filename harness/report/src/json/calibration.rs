@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::compared::Set;
+use super::doubted::Doubted;
 use super::next::NextAnswer;
 use super::{Answer, CameraAnswer};
 use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, warnings};
@@ -17,6 +18,8 @@ use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, war
 pub struct CalibrationAnswer {
     /// Why the calibration is in doubt, and the exit code 3; empty where no doubt was found.
     doubts: Vec<String>,
+    /// The same doubts for programs, but for those about photographs that others had before.
+    doubted: Vec<Doubted>,
     /// What the inputs may be in truth, first what explains them best; empty where nothing is in doubt, or nothing explains it.
     suspected: Vec<Suspect>,
     /// What was not looked for, and why: no doubt was found there because none could be.
@@ -233,12 +236,14 @@ impl CalibrationAnswer {
     /// A covariance that is none, in words.
     pub fn new(calibration: &Calibration<'_>, before: &[String], suspected: &[Suspected]) -> Result<Self, String> {
         let (prepared, solution) = (calibration.prepared, &calibration.solution);
-        let doubts: Vec<String> = before.iter().cloned().chain(calibration.doubts().into_iter().map(str::to_owned)).collect();
+        let found = calibration.doubts();
+        let doubts: Vec<String> = before.iter().cloned().chain(found.iter().map(ToString::to_string)).collect();
         let name = |index: usize| calibration.parameter_name(&calibration.covariances.parameters[index]);
         let pairs = calibration.covariances.correlated(CORRELATED);
         let tests = solution.significance().unwrap_or_default();
         Ok(Self {
             doubts,
+            doubted: found.iter().map(|doubt| Doubted::new(calibration, doubt)).collect(),
             suspected: suspected.iter().map(|one| Suspect { kind: one.kind, what: one.what.clone(), rms_px: one.rms_px }).collect(),
             untested: calibration.checked.iter().filter_map(Checked::untested).collect(),
             warnings: warnings(calibration),
@@ -322,7 +327,7 @@ fn check(checked: &Checked) -> Check {
         Verdict::Doubt(finding, cause) => ("doubt", Some(finding), Some(cause)),
     };
     Check {
-        what: checked.what.to_owned(),
+        what: checked.subject.what().to_owned(),
         verdict,
         p: finding.map(|finding| finding.p),
         moves: finding.and_then(|finding| finding.moves),

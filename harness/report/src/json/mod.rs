@@ -5,6 +5,7 @@ mod camera;
 mod compared;
 mod conversion;
 mod difference;
+mod doubted;
 mod judgement;
 mod measurement;
 mod next;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use calibench_records::adjustments::{Numbers, Row};
 use calibench_records::description::Sweep;
+use calibench_records::figures::{FigureName, Group, Quantity};
 use calibench_records::names::cell_folder;
-use calibench_records::results::Group;
 use calibench_records::statistics::running::{Paired, Running};
 use calibench_records::stored::{Table, read_adjustments};
 
@@ -34,8 +34,8 @@ pub struct Summary {
     pub values: Paired,
 }
 
-/// What of a figure is meant: method, set of parameters, group, name.
-pub type FigureKey = (String, String, Group, String);
+/// What of a figure is meant: method, set of parameters, figure.
+pub type FigureKey = (String, String, FigureName);
 
 /// All adjustments of a run. Its size does not grow with the number of trials.
 #[derive(Clone, Debug, Default)]
@@ -109,8 +109,8 @@ struct Kept {
     reference: Option<usize>,
 }
 
-/// Method, set, group and name, each name kept once.
-type Key = (Arc<str>, Arc<str>, Group, Arc<str>);
+/// Method, set and figure, each name kept once.
+type Key = (Arc<str>, Arc<str>, FigureName);
 
 #[derive(Default)]
 struct Reader {
@@ -141,11 +141,11 @@ impl Reader {
         match row.figure {
             Err(why) => self.found.failed.entry((text(&row.method), text(&row.set), row.group)).or_insert((0, why)).0 += 1,
             Ok(_) if row.group == Group::Point && !self.keeps_residuals => {}
-            Ok(numbers) if row.group == Group::Point => {
-                self.found.residuals.push((text(&row.method), text(&row.name), numbers.value));
+            Ok((name, numbers)) if row.group == Group::Point => {
+                self.found.residuals.push((text(&row.method), name.to_string(), numbers.value));
                 self.found.sets_of_residuals.push(text(&row.set));
             }
-            Ok(numbers) => self.figure((row.method, row.set, row.group, row.name), numbers),
+            Ok((name, numbers)) => self.figure((row.method, row.set, name), numbers),
         }
     }
 
@@ -175,7 +175,7 @@ impl Reader {
     fn place(&mut self, key: Key) -> usize {
         let is_it = |kept: &Kept| {
             let same = |a: &Arc<str>, b: &Arc<str>| Arc::ptr_eq(a, b) || a == b;
-            same(&kept.key.3, &key.3) && kept.key.2 == key.2 && same(&kept.key.1, &key.1) && same(&kept.key.0, &key.0)
+            kept.key.2 == key.2 && same(&kept.key.1, &key.1) && same(&kept.key.0, &key.0)
         };
         let place = if self.figures.get(self.next).is_some_and(is_it) {
             self.next
@@ -194,15 +194,15 @@ impl Reader {
     /// The place of the same figure of the reference method; of that method it is its own.
     fn reference(&mut self, place: usize) -> Option<usize> {
         if self.figures[place].reference.is_none() {
-            let (_, set, group, name) = self.figures[place].key.clone();
+            let (_, set, name) = self.figures[place].key.clone();
             let first: Arc<str> = self.found.methods.first()?.as_str().into();
-            self.figures[place].reference = self.places.get(&(first, set, group, name)).copied();
+            self.figures[place].reference = self.places.get(&(first, set, name)).copied();
         }
         self.figures[place].reference
     }
 
     fn found(mut self) -> Summaries {
-        let text = |(method, set, group, name): Key| (method.to_string(), set.to_string(), group, name.to_string());
+        let text = |(method, set, name): Key| (method.to_string(), set.to_string(), name);
         self.found.figures = self.figures.into_iter().map(|kept| (text(kept.key), kept.summary)).collect();
         self.found
     }
@@ -210,18 +210,23 @@ impl Reader {
 
 impl Summaries {
     /// A figure of the first set.
-    pub fn get(&self, method: &str, group: Group, name: &str) -> Option<&Summary> {
-        self.of_set(method, self.sets.first()?, group, name)
+    pub fn get(&self, method: &str, figure: impl Into<FigureName>) -> Option<&Summary> {
+        self.of_set(method, self.sets.first()?, figure)
+    }
+
+    /// A parameter of the interior orientation, of the first set.
+    pub fn parameter(&self, method: &str, name: &str) -> Option<&Summary> {
+        self.get(method, Quantity::Parameter.of(&[name]))
     }
 
     /// A figure of any set.
-    pub fn of_set(&self, method: &str, set: &str, group: Group, name: &str) -> Option<&Summary> {
-        self.figures.get(&(method.to_owned(), set.to_owned(), group, name.to_owned()))
+    pub fn of_set(&self, method: &str, set: &str, figure: impl Into<FigureName>) -> Option<&Summary> {
+        self.figures.get(&(method.to_owned(), set.to_owned(), figure.into()))
     }
 
     /// Images that were left out of the first set's adjustments of a method, a trial: fewer points than a pose takes were measured in them.
     pub fn left_out(&self, method: &str) -> f64 {
-        let all = self.get(method, Group::Network, "images left out").map_or(0.0, |left| left.value.mean * left.value.count as f64);
+        let all = self.get(method, Quantity::ImagesLeftOut).map_or(0.0, |left| left.value.mean * left.value.count as f64);
         all / self.trials.max(1) as f64
     }
 
@@ -252,7 +257,7 @@ mod tests {
         for keeps_residuals in [false, true] {
             let mut reader = Reader { keeps_residuals, ..Reader::default() };
             reader.add(row(0, "good", "c", Ok((3.0, 1.0, 1.0))));
-            reader.add(Row { group: Group::Point, ..row(0, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
+            reader.add(residual(0));
             let found = reader.found();
             let kept = usize::from(keeps_residuals);
             assert_eq!((found.figures.len(), found.residuals.len(), found.sets_of_residuals.len()), (1, kept, kept));
@@ -260,8 +265,15 @@ mod tests {
     }
 
     fn row(trial: u64, method: &str, name: &str, figure: Result<(f64, f64, f64), &str>) -> Row {
-        let figure = figure.map(|(value, sigma, error)| Numbers { value, sigma: Some(sigma), error: Some(error) }).map_err(str::to_owned);
-        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure, unit: "mm".into(), seed: 7 }
+        let numbers = |(value, sigma, error)| Numbers { value, sigma: Some(sigma), error: Some(error) };
+        let figure = figure.map(|all| (Quantity::Parameter.of(&[name]), numbers(all))).map_err(str::to_owned);
+        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, figure, unit: "mm".into(), seed: 7 }
+    }
+
+    fn residual(trial: u64) -> Row {
+        let numbers = Numbers { value: 0.5, sigma: None, error: None };
+        let figure = Ok((Quantity::ResidualX.of(&["6", "left/3"]), numbers));
+        Row { group: Group::Point, figure, unit: "px".into(), ..row(trial, "good", "c", Err("")) }
     }
 
     fn close(found: Option<f64>, expected: f64) {
@@ -280,10 +292,10 @@ mod tests {
         }
         reader.add(row(3, "good", "c", Err("one")));
         reader.add(row(4, "good", "c", Err("two")));
-        reader.add(Row { group: Group::Point, ..row(4, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
+        reader.add(residual(4));
         let found = reader.found();
         assert_eq!((found.trials, found.methods.len(), found.sets.len(), found.scored()), (5, 2, 1, vec!["c", "b1"]));
-        let c = found.get("good", Group::Iop, "c").unwrap();
+        let c = found.parameter("good", "c").unwrap();
         assert_eq!(c.first, Some(Numbers { value: 3.0, sigma: Some(1.5), error: Some(3.0) }));
         assert_eq!((c.value.count, c.sigma_ratio.count, c.value_ratio.count), (4, 2, 2));
         close(c.value.mean(), 19.0 / 4.0);

@@ -7,7 +7,7 @@ pub mod tables;
 
 pub use sweep::section as sweep;
 
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 
 use super::load::Loaded;
 use crate::canvas::{Canvas, Pictures};
@@ -32,8 +32,7 @@ pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String
     };
     add("plan", "The network from above, and the wall with control and check points", pictures::plan::plan(views));
     add("distribution", "The distribution of the image points over the frame", pictures::distribution::distribution(loaded, views));
-    let sigma0 =
-        |method: &&String| found.get(method, Group::Network, "sigma0").and_then(|sigma0| sigma0.value.mean()).unwrap_or(f64::INFINITY);
+    let sigma0 = |method: &&String| found.get(method, Quantity::Sigma0).and_then(|sigma0| sigma0.value.mean()).unwrap_or(f64::INFINITY);
     let best = found.methods.iter().min_by(|a, b| sigma0(a).total_cmp(&sigma0(b)));
     add("factors", "The reduction factor of all interior and exterior parameters", best.and_then(|m| pictures::factors::factors(found, m)));
     add("residuals", "The residuals after the calibration", pictures::residuals::residuals(found));

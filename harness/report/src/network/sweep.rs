@@ -1,7 +1,7 @@
 //! A sweep of a calibrated scenario: how the reduction factor depends on what is swept.
 
 use calibench_records::description::Axis;
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 use rayon::prelude::*;
 
 use super::pictures::floor::{Curve, Words, floor};
@@ -52,7 +52,7 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         })
         .collect();
     for (value, found) in &cells {
-        let sigma0 = found.methods.first().and_then(|m| found.get(m, Group::Network, "sigma0")?.value.mean());
+        let sigma0 = found.methods.first().and_then(|m| found.get(m, Quantity::Sigma0)?.value.mean());
         let mut row = vec![value.text.clone(), sigma0.map_or_else(String::new, |s| fixed(s, 3))];
         for (i, method) in methods.iter().enumerate() {
             for (k, factor) in [reported(found, method), truth(found, method)].into_iter().enumerate() {
@@ -96,7 +96,7 @@ fn words(axis: &Axis) -> (String, String, String) {
 }
 
 fn averaged(found: &Summaries, method: &str, of: impl Fn(&Summary) -> Option<(f64, f64)>) -> Option<(f64, f64)> {
-    let all: Vec<(f64, f64)> = found.scored().iter().map(|name| of(found.get(method, Group::Iop, name)?)).collect::<Option<_>>()?;
+    let all: Vec<(f64, f64)> = found.scored().iter().map(|name| of(found.parameter(method, name)?)).collect::<Option<_>>()?;
     let n = all.len() as f64;
     (n > 0.0).then(|| (all.iter().map(|v| v.0).sum::<f64>() / n, all.iter().map(|v| v.1).sum::<f64>() / n))
 }

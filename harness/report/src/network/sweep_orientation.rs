@@ -1,6 +1,6 @@
 //! What the first method's orientation is worth at every cell of a sweep.
 
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 
 use super::tables::mean;
 use crate::load::adjustments::{Summaries, Summary};
@@ -18,12 +18,12 @@ pub fn table(axis: &str, cells: &[(String, &Summaries)]) -> String {
     for (value, found) in cells {
         let mut row = vec![value.clone()];
         for name in &names {
-            let parameter = found.get(method, Group::Iop, name);
+            let parameter = found.parameter(method, name);
             row.push(parameter.and_then(|summary| summary.sigma.mean()).map_or_else(String::new, scaled(name)));
             row.push(parameter.and_then(|summary| root(summary, name)).unwrap_or_default());
         }
-        row.push(mean(found.get(method, Group::Frame, "rms"), 2));
-        row.extend(["rmse_xy", "rmse_z"].map(|name| mean(found.get(method, Group::Check, name), 4)));
+        row.push(mean(found.get(method, Quantity::OverFrame), 2));
+        row.extend([Quantity::RmseXy, Quantity::RmseZ].map(|error| mean(found.get(method, error), 4)));
         row.push(found.failures(method, None).to_string());
         rows.row(row);
     }

@@ -1,7 +1,7 @@
 //! Tables of a calibrated scenario: every method, and the sets of parameters.
 
 use calibench_records::description::is_limited;
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::plain;
@@ -18,19 +18,15 @@ pub fn methods(found: &Summaries) -> String {
     header.extend(["RF, reported", "RF, true errors", "RMSE_XY", "RMSE_Z", "RF of RMSE_XY", "RF of RMSE_Z", "failed"].map(str::to_owned));
     let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
     for method in &found.methods {
-        let mut row = vec![
-            format!("`{method}`"),
-            mean(found.get(method, Group::Network, "sigma0"), 3),
-            mean(found.get(method, Group::Frame, "rms"), 2),
-        ];
-        row.extend(parameters.iter().map(|name| found.get(method, Group::Iop, name).and_then(honesty).unwrap_or_default()));
+        let mut row =
+            vec![format!("`{method}`"), mean(found.get(method, Quantity::Sigma0), 3), mean(found.get(method, Quantity::OverFrame), 2)];
+        row.extend(parameters.iter().map(|name| found.parameter(method, name).and_then(honesty).unwrap_or_default()));
         row.push(average(found, method, |summary| summary.sigma_ratio.mean().zip(summary.sigma_ratio.half())));
         row.push(average(found, method, |summary| summary.errors.ratio().and_then(|(ratio, half)| Some((ratio, half?)))));
-        for name in ["rmse_xy", "rmse_z"] {
-            row.push(mean(found.get(method, Group::Check, name), 6));
-        }
-        for name in ["rmse_xy", "rmse_z"] {
-            let ratio = found.get(method, Group::Check, name).and_then(|summary| summary.values.ratio());
+        let errors = [Quantity::RmseXy, Quantity::RmseZ];
+        row.extend(errors.map(|error| mean(found.get(method, error), 6)));
+        for error in errors {
+            let ratio = found.get(method, error).and_then(|summary| summary.values.ratio());
             row.push(ratio.map_or_else(String::new, |(ratio, half)| with_half(ratio, half, 2)));
         }
         row.push(found.failures(method, found.sets.first().map(String::as_str)).to_string());
@@ -73,7 +69,7 @@ fn honesty(summary: &Summary) -> Option<String> {
 }
 
 fn average(found: &Summaries, method: &str, of: impl Fn(&Summary) -> Option<(f64, f64)>) -> String {
-    let all: Option<Vec<(f64, f64)>> = found.scored().iter().map(|name| of(found.get(method, Group::Iop, name)?)).collect();
+    let all: Option<Vec<(f64, f64)>> = found.scored().iter().map(|name| of(found.parameter(method, name)?)).collect();
     let Some(all) = all.filter(|all| !all.is_empty()) else { return String::new() };
     let n = all.len() as f64;
     with_half(all.iter().map(|v| v.0).sum::<f64>() / n, Some(all.iter().map(|v| v.1).sum::<f64>() / n), 3)
@@ -96,8 +92,8 @@ pub fn sets(found: &Summaries) -> String {
     ]);
     for set in &found.sets {
         for method in &found.methods {
-            let c = found.of_set(method, set, Group::Iop, "c");
-            let sigma0 = found.of_set(method, set, Group::Network, "sigma0");
+            let c = found.of_set(method, set, Quantity::Parameter.of(&["c"]));
+            let sigma0 = found.of_set(method, set, Quantity::Sigma0);
             let um = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(1e3 * value, 1));
             rows.row([
                 format!("`{set}`"),
@@ -111,7 +107,7 @@ pub fn sets(found: &Summaries) -> String {
         }
     }
     let lowest = |method: &String| {
-        let sigma = |set: &&String| found.of_set(method, set, Group::Iop, "c").and_then(|c| c.first?.sigma);
+        let sigma = |set: &&String| found.of_set(method, set, Quantity::Parameter.of(&["c"])).and_then(|c| c.first?.sigma);
         let best = found.sets.iter().filter_map(|set| Some((sigma(&set)?, set))).min_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(_, set)| format!("`{method}` chooses `{set}`"))
     };
@@ -127,7 +123,7 @@ pub fn sets(found: &Summaries) -> String {
 /// The additional parameter with the least mean ratio of value and sigma; c, x0 and y0 are not asked for.
 fn weakest(found: &Summaries, method: &str, set: &str) -> String {
     let of = |name: &str| {
-        let summary = found.of_set(method, set, Group::Iop, name)?;
+        let summary = found.of_set(method, set, Quantity::Parameter.of(&[name]))?;
         Some((summary.value.mean()?.abs() / summary.sigma.mean()?, name.to_owned()))
     };
     let additional = Summaries::parameters(set).filter(|name| !["c", "x0", "y0"].contains(name));
@@ -137,6 +133,8 @@ fn weakest(found: &Summaries, method: &str, set: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use calibench_records::figures::Group;
+
     use super::*;
     use crate::load::adjustments::FigureKey;
     use crate::tests::small::row;
@@ -148,7 +146,7 @@ mod tests {
             summary.sigma.add(*sigma);
             summary.square.add(error * error);
         }
-        ((method.to_owned(), set.to_owned(), Group::Iop, name.to_owned()), summary)
+        ((method.to_owned(), set.to_owned(), Quantity::Parameter.of(&[name])), summary)
     }
 
     const FULL: &str = "c,x0,k1,k2";

@@ -1,8 +1,9 @@
 //! Tables of adjustments from three trials, whose figures are computed by hand: t(0.975, 2) = 4.302653.
 
 use calibench_records::adjustments::CalibrationWriter;
+use calibench_records::figures::Quantity;
 use calibench_records::points::RunInfo;
-use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
+use calibench_records::results::{Calibrated, Figure, MethodInfo};
 use calibench_records::stored::Table;
 
 use super::tables;
@@ -13,14 +14,14 @@ use crate::tests::small::new_table;
 
 fn calibrated(method: usize, c: [f64; 3], rmse_xy: f64, failed: bool) -> Calibrated {
     let [value, sigma, error] = c;
-    let iop = Figure { group: Group::Iop, name: "c".into(), value, sigma: Some(sigma), error: Some(error), unit: "mm" };
-    let check = |name: &str, value| Figure::plain(Group::Check, name, value, "m");
+    let iop = Figure { name: Quantity::Parameter.of(&["c"]), value, sigma: Some(sigma), error: Some(error), unit: "mm" };
+    let check = |quantity: Quantity, value| Figure::plain(quantity, value, "m");
     let figures = vec![
         iop,
-        Figure::plain(Group::Network, "sigma0", 10.0 * sigma, "px"),
-        check("rmse_xy", rmse_xy),
-        check("rmse_xy_survey", 2.0 * rmse_xy),
-        check("distance", 4.0),
+        Figure::plain(Quantity::Sigma0, 10.0 * sigma, "px"),
+        check(Quantity::RmseXy, rmse_xy),
+        check(Quantity::RmseXySurvey, 2.0 * rmse_xy),
+        check(Quantity::Distance, 4.0),
     ];
     let outcome = if failed { Err("no convergence".to_owned()) } else { Ok(figures) };
     Calibrated { method, set: 0, outcome, check_failed: None }
@@ -139,7 +140,7 @@ fn images_that_were_left_out_are_said() {
     for number in 0..2 {
         let mut some = calibrated(1, [16.5, 0.01, 0.001], 0.002, false);
         if number == 0 {
-            some.outcome.as_mut().unwrap().push(Figure::plain(Group::Network, "images left out", 3.0, ""));
+            some.outcome.as_mut().unwrap().push(Figure::plain(Quantity::ImagesLeftOut, 3.0, ""));
         }
         writer.trial(number, &[calibrated(0, [16.5, 0.01, 0.001], 0.002, false), some]).unwrap();
     }

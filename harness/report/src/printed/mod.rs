@@ -7,7 +7,7 @@ mod pictures;
 mod tests;
 
 use calibench_records::description::Printed;
-use calibench_records::results::Group;
+use calibench_records::figures::{FigureName, Group, Quantity};
 
 use crate::canvas::Pictures;
 use crate::load::Loaded;
@@ -16,6 +16,9 @@ use crate::markdown::MarkdownTable;
 use crate::markdown::plain;
 use pictures::Drawn;
 
+/// Where a station stands, and its angles.
+const STATION: [Quantity; 3] = [Quantity::StationX, Quantity::StationY, Quantity::StationZ];
+const ANGLES: [Quantity; 3] = [Quantity::Omega, Quantity::Phi, Quantity::Kappa];
 /// What stands above the figures of the network.
 const NETWORK: &str = "The network of stations that explains the fitted columns, and where its stations stand.";
 /// What stands above changed cameras.
@@ -48,14 +51,14 @@ pub fn section(loaded: &Loaded, sets: &Printed, stem: &str) -> (String, Pictures
 }
 
 /// The value of a figure; nothing where a set has none.
-fn value(found: &Summaries, set: &str, group: Group, name: &str) -> Option<f64> {
-    found.of_set(found.methods.first()?, set, group, name)?.first.map(|numbers| numbers.value)
+fn value(found: &Summaries, set: &str, figure: FigureName) -> Option<f64> {
+    found.of_set(found.methods.first()?, set, figure)?.first.map(|numbers| numbers.value)
 }
 
 /// The names of all figures of some sets in a group, in the order of the alphabet.
-fn names(found: &Summaries, sets: &[String], group: Group) -> Vec<String> {
-    let mine = found.figures.keys().filter(|(_, set, of, _)| *of == group && sets.contains(set));
-    let mut names: Vec<String> = mine.map(|(.., name)| name.clone()).collect();
+fn names(found: &Summaries, sets: &[String], group: Group) -> Vec<FigureName> {
+    let mine = found.figures.keys().filter(|(_, set, name)| name.group() == group && sets.contains(set));
+    let mut names: Vec<FigureName> = mine.map(|(.., name)| name.clone()).collect();
     names.sort();
     names.dedup();
     names
@@ -71,8 +74,8 @@ fn by_figure(found: &Summaries, sets: &[String], groups: &[Group]) -> String {
     let mut table = MarkdownTable::new(&header);
     for &group in groups {
         for name in names(found, sets, group) {
-            let label = if group == Group::Check { format!("{name}, of printed errors") } else { name.clone() };
-            table.row(std::iter::once(label).chain(sets.iter().map(|set| cell(value(found, set, group, &name)))));
+            let label = if group == Group::Check { format!("{name}, of printed errors") } else { name.to_string() };
+            table.row(std::iter::once(label).chain(sets.iter().map(|set| cell(value(found, set, name.clone())))));
         }
     }
     table.render()
@@ -81,10 +84,10 @@ fn by_figure(found: &Summaries, sets: &[String], groups: &[Group]) -> String {
 /// A row for every set, a column for every figure.
 fn by_set(found: &Summaries, sets: &[String]) -> String {
     let names = names(found, sets, Group::Network);
-    let header: Vec<&str> = std::iter::once("camera").chain(names.iter().map(String::as_str)).collect();
+    let header: Vec<&str> = std::iter::once("camera").chain(names.iter().map(FigureName::text)).collect();
     let mut table = MarkdownTable::new(&header);
     for set in sets {
-        table.row(std::iter::once(set.clone()).chain(names.iter().map(|name| cell(value(found, set, Group::Network, name)))));
+        table.row(std::iter::once(set.clone()).chain(names.iter().map(|name| cell(value(found, set, name.clone())))));
     }
     table.render()
 }
@@ -92,9 +95,10 @@ fn by_set(found: &Summaries, sets: &[String]) -> String {
 /// The numbers of a network.
 fn numbers(found: &Summaries, network: &str) -> String {
     let mut table = MarkdownTable::new(&["number", "value"]);
-    for name in names(found, &[network.to_owned()], Group::Eop).into_iter().filter(|name| !name.contains('/')) {
-        let found = value(found, network, Group::Eop, &name);
-        table.row([name, cell(found)]);
+    let of_site = |name: &FigureName| !STATION.contains(&name.quantity()) && !ANGLES.contains(&name.quantity());
+    for name in names(found, &[network.to_owned()], Group::Eop).into_iter().filter(of_site) {
+        let found = value(found, network, name.clone());
+        table.row([name.to_string(), cell(found)]);
     }
     table.render()
 }
@@ -102,9 +106,9 @@ fn numbers(found: &Summaries, network: &str) -> String {
 /// The stations of a network, in their order.
 fn stations(found: &Summaries, network: &str) -> String {
     let mut table = MarkdownTable::new(&["station", "X", "Y", "Z"]);
-    let at = |station: usize, axis: &str| value(found, network, Group::Eop, &format!("{station}/{axis}"));
-    for station in (1..).take_while(|&station| at(station, "X").is_some()) {
-        let axes = ["X", "Y", "Z"].map(|axis| at(station, axis).map_or_else(String::new, |value| format!("{value:.2}")));
+    let at = |station: usize, axis: Quantity| value(found, network, axis.of(&[&station.to_string()]));
+    for station in (1..).take_while(|&station| at(station, Quantity::StationX).is_some()) {
+        let axes = STATION.map(|axis| at(station, axis).map_or_else(String::new, |value| format!("{value:.2}")));
         table.row(std::iter::once(station.to_string()).chain(axes));
     }
     table.render()

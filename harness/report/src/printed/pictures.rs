@@ -3,12 +3,12 @@
 use calibench_model::Pose;
 use calibench_model::convert::ConvertError;
 use calibench_records::description::{PlacedNetwork, Printed, Role, Station, Target, Views};
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 use nalgebra::Point3;
 
 use super::grids::{self, Grid};
 use super::maps::{conversions, distortions};
-use super::value;
+use super::{ANGLES, STATION, value};
 use crate::canvas::Pictures;
 use crate::field::Field;
 use crate::field_panels::panels;
@@ -101,14 +101,14 @@ fn sorted(maps: Vec<(String, Result<Field, ConvertError>)>) -> (Vec<Field>, Stri
 
 /// Check points and stations; without stations where the network was not found.
 pub(super) fn views(printed: &Printed, network: &PlacedNetwork, found: &Summaries) -> Views {
-    let get = |station: usize, name: &str| value(found, &network.set, Group::Eop, &format!("{station}/{name}"));
-    let all = |station: usize, names: [&str; 3]| -> Option<[f64; 3]> {
-        let values = names.map(|name| get(station, name));
+    let get = |station: usize, quantity: Quantity| value(found, &network.set, quantity.of(&[&station.to_string()]));
+    let all = |station: usize, quantities: [Quantity; 3]| -> Option<[f64; 3]> {
+        let values = quantities.map(|quantity| get(station, quantity));
         values.iter().all(Option::is_some).then(|| values.map(Option::unwrap_or_default))
     };
     let station = |number: usize| {
-        let centre = all(number, ["X", "Y", "Z"])?;
-        let pose = Pose::from_angles(Point3::from(centre), all(number, ["omega", "phi", "kappa"])?.map(f64::to_radians));
+        let centre = all(number, STATION)?;
+        let pose = Pose::from_angles(Point3::from(centre), all(number, ANGLES)?.map(f64::to_radians));
         // A camera looks along its -z.
         let sight = (-pose.rotation.row(2).transpose()).into();
         Some(Station { name: number.to_string(), centre, sight, second_step: false })

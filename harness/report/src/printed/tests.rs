@@ -19,10 +19,11 @@ fn summaries() -> Summaries {
     let mut found = Summaries { methods: vec!["print".into()], trials: 1, ..Summaries::default() };
     let mut add = |set: &str, group: Group, name: &str, value: f64| {
         let first = Some(Numbers { value, sigma: None, error: None });
-        found.figures.insert(("print".into(), set.into(), group, name.into()), Summary { first, ..Summary::default() });
+        let figure = FigureName::parse(group, name).unwrap();
+        found.figures.insert(("print".into(), set.into(), figure), Summary { first, ..Summary::default() });
     };
-    add("a", Group::Network, "c, mm", 1.0);
-    add("b", Group::Network, "c, mm", 3.0);
+    add("a", Group::Network, "c, um", 1.0);
+    add("b", Group::Network, "c, um", 3.0);
     add("a", Group::Check, "RMSE X, m", 2.0);
     add("a", Group::Object, "V1/X", 7.0);
     add("net", Group::Eop, "height, m", 5.0);
@@ -48,8 +49,8 @@ fn cells(table: &str) -> Vec<Vec<String>> {
 fn figures_stand_by_set_and_what_a_set_lacks_is_empty() {
     let sets = ["a".to_owned(), "b".to_owned()];
     let found = cells(&by_figure(&summaries(), &sets, &[Group::Network, Group::Check]));
-    assert_eq!(found, [["figure", "a", "b"], ["c, mm", "1.00", "3.00"], ["RMSE X, m, of printed errors", "2.00", ""]]);
-    assert_eq!(cells(&by_set(&summaries(), &sets)), [["camera", "c, mm"], ["a", "1.00"], ["b", "3.00"]]);
+    assert_eq!(found, [["figure", "a", "b"], ["c, um", "1.00", "3.00"], ["RMSE X, m, of printed errors", "2.00", ""]]);
+    assert_eq!(cells(&by_set(&summaries(), &sets)), [["camera", "c, um"], ["a", "1.00"], ["b", "3.00"]]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Our figures of adjustments behind a printed cell.
 
-use calibench_records::results::Group;
+use calibench_records::figures::{FigureName, Group, Quantity};
 
 use super::figure::Ours;
 use super::{Cell, Metric};
@@ -11,28 +11,28 @@ pub fn ours(found: &Summaries, cell: &Cell, default: &str, pitch_um: f64) -> Opt
     let method = cell.method.as_deref().unwrap_or(default);
     let of = cell.of.as_deref().unwrap_or("c");
     let reference = found.methods.first()?;
-    let iop = |name: &str| found.get(method, Group::Iop, name);
-    let check = |name: &str| Some((found.get(method, Group::Check, name)?, found.get(method, Group::Check, "distance")?.value.mean()?));
+    let iop = |name: &str| found.parameter(method, name);
+    let check = |error: Quantity| Some((found.get(method, error)?, found.get(method, Quantity::Distance)?.value.mean()?));
     match cell.metric {
         Metric::IopValue => Ours::of(iop(of)?.first.map(|n| n.value), &iop(of)?.value),
         Metric::IopSigma => sigma(iop(of)?),
         Metric::IopSigmaPx => Some(sigma(iop(of)?)?.scaled(1e3 / pitch_um)),
         Metric::SigmaRatio => {
-            let (own, other) = (iop(of)?, found.get(reference, Group::Iop, of)?);
+            let (own, other) = (iop(of)?, found.parameter(reference, of)?);
             let one = own.first?.sigma? / other.first?.sigma?;
             Some(Ours { truth: own.errors.ratio(), ..Ours::of(Some(one), &own.sigma_ratio)? })
         }
         Metric::MeanSigmaRatio => mean_ratio(found, method, reference),
         Metric::RelativeXy | Metric::RelativeZ => {
-            let (rmse, distance) = check(name_of(cell.metric))?;
+            let (rmse, distance) = check(surveyed(cell.metric)[0])?;
             let ours = Ours::of(rmse.first.map(|n| n.value), &rmse.value)?;
             Some(ours.scaled(1.0 / distance))
         }
         Metric::RelativeXyRatio | Metric::RelativeZRatio => {
-            let name = name_of(cell.metric);
-            let (own, other) = (found.get(method, Group::Check, name)?, found.get(reference, Group::Check, name)?);
+            let [survey, truth] = surveyed(cell.metric);
+            let (own, other) = (found.get(method, survey)?, found.get(reference, survey)?);
             let one = own.first?.value / other.first?.value;
-            let against_truth = found.get(method, Group::Check, name.trim_end_matches("_survey"));
+            let against_truth = found.get(method, truth);
             Some(Ours { truth: against_truth.and_then(|s| s.values.ratio()), ..Ours::of(Some(one), &own.value_ratio)? })
         }
         Metric::Figure => figure(found, [method, cell.set.as_deref()?, cell.of.as_deref()?], cell),
@@ -46,19 +46,41 @@ pub fn ours(found: &Summaries, cell: &Cell, default: &str, pitch_um: f64) -> Opt
     }
 }
 
-/// A figure by method, set and name, in the group of `cell`.
-fn figure(found: &Summaries, [method, set, name]: [&str; 3], cell: &Cell) -> Option<Ours> {
+/// The figure called `name` in the group of `cell`.
+fn figure_of(cell: &Cell, name: &str) -> Result<FigureName, String> {
     let group = match &cell.group {
-        Some(wanted) => Group::ALL.iter().find(|(_, name)| name == wanted)?.0,
+        Some(wanted) => Group::named(wanted).ok_or_else(|| {
+            let known: Vec<String> = Group::ALL.iter().map(|(_, name)| format!("`{name}`")).collect();
+            format!("`{wanted}` is no group of figures: expected {}", known.join(", "))
+        })?,
         None => Group::Network,
     };
-    let summary = found.of_set(method, set, group, name)?;
+    FigureName::parse(group, name).map_err(|unknown| unknown.to_string())
+}
+
+/// What is wrong with the figures that `cell` names: such as no adjustment has.
+pub fn unknown(cell: &Cell) -> Option<String> {
+    let names = match cell.metric {
+        Metric::Figure => vec![cell.of.as_deref()],
+        Metric::FigureRatio => vec![cell.of.as_deref(), cell.over.as_ref().and_then(|over| over.of.as_deref())],
+        _ => return None,
+    };
+    names.into_iter().flatten().find_map(|name| figure_of(cell, name).err())
+}
+
+/// A figure by method, set and name, in the group of `cell`.
+fn figure(found: &Summaries, [method, set, name]: [&str; 3], cell: &Cell) -> Option<Ours> {
+    let summary = found.of_set(method, set, figure_of(cell, name).ok()?)?;
     Some(Ours::of(summary.first.map(|numbers| numbers.value), &summary.value)?.scaled(cell.times.unwrap_or(1.0)))
 }
 
-/// The paper's check coordinates are surveyed ones.
-fn name_of(metric: Metric) -> &'static str {
-    if matches!(metric, Metric::RelativeXy | Metric::RelativeXyRatio) { "rmse_xy_survey" } else { "rmse_z_survey" }
+/// The paper's check coordinates are surveyed ones: the error against these, and that against the truth.
+const fn surveyed(metric: Metric) -> [Quantity; 2] {
+    if matches!(metric, Metric::RelativeXy | Metric::RelativeXyRatio) {
+        [Quantity::RmseXySurvey, Quantity::RmseXy]
+    } else {
+        [Quantity::RmseZSurvey, Quantity::RmseZ]
+    }
 }
 
 fn sigma(summary: &Summary) -> Option<Ours> {
@@ -73,7 +95,7 @@ fn mean_ratio(found: &Summaries, method: &str, reference: &str) -> Option<Ours> 
     let all: Vec<Ours> = names
         .iter()
         .filter_map(|name| {
-            let (own, other) = (found.get(method, Group::Iop, name)?, found.get(reference, Group::Iop, name)?);
+            let (own, other) = (found.parameter(method, name)?, found.parameter(reference, name)?);
             let one = own.first?.sigma? / other.first?.sigma?;
             Some(Ours { truth: own.errors.ratio(), ..Ours::of(Some(one), &own.sigma_ratio)? })
         })
@@ -106,7 +128,8 @@ mod tests {
             let numbers = values.map(|value| Numbers { value, sigma: None, error: None });
             let mut summary = Summary { first: Some(numbers[0]), ..Summary::default() };
             values.into_iter().for_each(|value| summary.value.add(value));
-            found.figures.insert((method.into(), set.into(), group, "sigma0".into()), summary);
+            let figure = if group == Group::Object { Quantity::ObjectZ.of(&["left"]) } else { Quantity::Sigma0.into() };
+            found.figures.insert((method.into(), set.into(), figure), summary);
         };
         add("lsm", "small", Group::Network, [2.0, 4.0]);
         add("lsm", "large", Group::Network, [1.0, 2.0]);
@@ -117,7 +140,8 @@ mod tests {
 
     /// First trial and mean behind a cell with `keys`, by `lsm` unless they say otherwise.
     fn of(keys: &str) -> Option<(f64, f64)> {
-        let text = format!("row = \"a\"\ncolumn = \"b\"\nprinted = \"1\"\nof = \"sigma0\"\n{keys}");
+        let text = format!("row = \"a\"\ncolumn = \"b\"\nprinted = \"1\"\n{keys}");
+        let text = if keys.contains("of = ") { text } else { text + "\nof = \"sigma0\"" };
         let cell: Cell = toml::from_str(&text).unwrap();
         ours(&summaries(), &cell, "lsm", 27.0).map(|ours| (ours.one, ours.mean))
     }
@@ -128,7 +152,7 @@ mod tests {
         assert_eq!(of("metric = \"figure\"\nset = \"small\""), Some((2.0, 3.0)));
         assert_eq!(of("metric = \"figure\"\nset = \"large\"\ntimes = 10"), Some((10.0, 15.0)));
         assert_eq!(of("metric = \"figure\"\nset = \"large\"\nmethod = \"centroid\""), Some((3.0, 3.0)));
-        assert_eq!(of(&format!("metric = \"figure\"\nset = \"small\"\ngroup = \"{object}\"")), Some((70.0, 80.0)));
+        assert_eq!(of(&format!("metric = \"figure\"\nset = \"small\"\nof = \"left/Z\"\ngroup = \"{object}\"")), Some((70.0, 80.0)));
     }
 
     #[test]
@@ -136,6 +160,18 @@ mod tests {
         assert_eq!(of("metric = \"figure_ratio\"\nset = \"small\"\nover = { set = \"large\" }"), Some((2.0, 2.0)));
         let methods = "metric = \"figure_ratio\"\nset = \"large\"\nmethod = \"centroid\"\nover = { method = \"lsm\" }";
         assert_eq!(of(methods), Some((3.0, 2.0)));
+    }
+
+    #[test]
+    fn a_figure_that_no_adjustment_has_is_a_mistake() {
+        let said = |keys: &str| unknown(&toml::from_str(&format!("row = \"a\"\ncolumn = \"b\"\nprinted = \"1\"\n{keys}")).unwrap());
+        assert_eq!(said("metric = \"figure\"\nof = \"sigma0\""), None);
+        assert_eq!(said("metric = \"iop_value\"\nof = \"any\""), None);
+        let near = Some("no figure of `network` is called `sigma 0`: is `sigma0` meant?");
+        assert_eq!(said("metric = \"figure\"\nof = \"sigma 0\"").as_deref(), near);
+        assert_eq!(said("metric = \"figure_ratio\"\nof = \"sigma0\"\nover = { of = \"sigma 0\" }").as_deref(), near);
+        let group = said("metric = \"figure\"\nof = \"rmse_xy\"\ngroup = \"chek\"").unwrap();
+        assert!(group.contains("`chek` is no group of figures: expected `iop`, `eop`"), "{group}");
     }
 
     #[test]

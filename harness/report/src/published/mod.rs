@@ -251,6 +251,9 @@ fn parse(file: &str, text: &str) -> Result<Table, Problems> {
             let message = format!("`{}` is no number: expected digits as in 22.520 or 1/18.9, or `not_comparable`", cell.printed);
             return Err(fail(Problem::new(place..place + cell.printed.len(), message)));
         }
+        if let Some(message) = adjustment::unknown(cell) {
+            return Err(fail(Problem::new(place..place, format!("row `{}`: {message}", cell.row))));
+        }
         if cell.metric.is_of_one_target() != cell.target.is_some() {
             let message = format!("row `{}`: figures of one target have a `target`, statistics have none", cell.row);
             return Err(fail(Problem::new(place..place, message)));

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
-use calibench_records::results::{Group, Outcome, Trial};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Outcome, Trial};
 use calibench_records::statistics::running::Running;
 
 use crate::LoadError;
@@ -206,7 +207,7 @@ impl Comparison {
     /// The camera that a method gave in a cell.
     pub fn camera(&self, board: usize, value: usize, method: &str) -> Option<Camera> {
         let summaries = self.cameras[self.cell(board, value)].as_ref()?;
-        let frame = summaries.get(method, Group::Frame, "rms")?;
+        let frame = summaries.get(method, Quantity::OverFrame)?;
         Some(Camera {
             error: (frame.value.mean()?, frame.value.half()),
             predicted: frame.sigma.mean(),

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use calibench_model::{PixelPoint, Rejection};
 use calibench_records::compressor::Compressor;
 use calibench_records::description::{self, Description, Subject};
+use calibench_records::figures::{FigureName, Group, Units};
 use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
-use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
+use calibench_records::results::{Figure, MethodInfo, Outcome, PointResult, Trial};
 use calibench_records::stored::{Table, open};
 use tempfile::TempDir;
 
@@ -188,4 +189,15 @@ pub fn row(page: &str, start: &[&str]) -> Vec<String> {
     let rows = page.lines().filter(|line| line.starts_with('|'));
     let mut cells = rows.map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>());
     cells.find(|cells| cells.iter().zip(start).all(|(cell, start)| cell == start)).unwrap_or_else(|| panic!("no row {start:?}\n{page}"))
+}
+
+/// A figure by its name in files, in a unit that it has.
+pub fn figure(group: Group, name: &str, value: f64) -> Figure {
+    let name = FigureName::parse(group, name).unwrap();
+    let unit = match name.quantity().entry().units {
+        Units::One(unit) | Units::Either(&[unit, ..]) => unit,
+        Units::Object => "m",
+        _ => "",
+    };
+    Figure::plain(name, value, unit)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use calibench_records::adjustments::{Numbers, Row};
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 use plotters::prelude::*;
 
 use super::cases::hundredths;
@@ -34,7 +34,10 @@ pub struct Distances {
 impl Distances {
     /// Adds what a row says of them.
     pub fn add(&mut self, row: &Row) {
-        let Row { method, set, group: Group::Frame, figure: Ok(Numbers { value, .. }), .. } = row else { return };
+        let Row { method, set, figure: Ok((name, Numbers { value, .. })), .. } = row else { return };
+        if name.quantity() != Quantity::OverFrame {
+            return;
+        }
         if self.sets.entry(method.clone()).or_insert_with(|| set.clone()) == set {
             self.values.entry(method.clone()).or_default().push(*value);
         }
@@ -55,7 +58,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// A row a cell and method: the camera, its own opinion of c beside the truth, and check points under every case.
 pub fn table(axes: &[String], cells: &[Cell]) -> String {
     let Some(first) = cells.first() else { return String::new() };
-    let is_case = |set: &&String| first.found.figures.keys().any(|(_, s, _, name)| s == *set && name == "rmse_xy");
+    let is_case = |set: &&String| first.found.figures.keys().any(|(_, s, name)| s == *set && name.quantity() == Quantity::RmseXy);
     let cases: Vec<&String> = first.found.sets.iter().filter(is_case).collect();
     let mut header: Vec<String> = axes.iter().map(|axis| format!("`{axis}`")).collect();
     header.extend(["method", "camera, px: median", "mean", "sigma of c, um", "true error of c, um"].map(str::to_owned));
@@ -67,16 +70,17 @@ pub fn table(axes: &[String], cells: &[Cell]) -> String {
     let (fixed_ones, changing): (Vec<&String>, Vec<&String>) = first.found.methods.iter().partition(same);
     for cell in cells {
         for &method in &changing {
-            let get = |group, name| cell.found.get(method, group, name);
             let um = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(1e3 * value, 1));
-            let c = get(Group::Iop, "c");
+            let c = cell.found.parameter(method, "c");
             let mut row = cell.values.clone();
             row.push(method.clone());
             row.push(cell.medians.get(method).map_or_else(String::new, |value| fixed(*value, 2)));
-            row.push(get(Group::Frame, "rms").and_then(|s| s.value.mean()).map_or_else(String::new, |value| fixed(value, 2)));
+            row.push(
+                cell.found.get(method, Quantity::OverFrame).and_then(|s| s.value.mean()).map_or_else(String::new, |value| fixed(value, 2)),
+            );
             row.push(um(c.and_then(|c: &Summary| c.sigma.mean())));
             row.push(um(c.and_then(|c| c.square.mean()).map(f64::sqrt)));
-            row.extend(cases.iter().map(|case| hundredths(cell.found.of_set(method, case, Group::Check, "rmse_xy"))));
+            row.extend(cases.iter().map(|case| hundredths(cell.found.of_set(method, case, Quantity::RmseXy))));
             row.push(cell.found.failures(method, None).to_string());
             rows.row(row);
         }
@@ -92,7 +96,7 @@ pub fn table(axes: &[String], cells: &[Cell]) -> String {
 /// A sentence on the methods that no axis touches.
 fn untouched(cell: &Cell, cases: &[&String], methods: &[&String]) -> String {
     let of = |method: &&String| {
-        let errors = cases.iter().map(|case| format!("{} ({case})", hundredths(cell.found.of_set(method, case, Group::Check, "rmse_xy"))));
+        let errors = cases.iter().map(|case| format!("{} ({case})", hundredths(cell.found.of_set(method, case, Quantity::RmseXy))));
         let median = cell.medians.get(*method).map_or_else(String::new, |value| fixed(*value, 2));
         format!(" The same everywhere: {method}, {median} px in the median, planimetric {}.", errors.collect::<Vec<_>>().join(", "))
     };

@@ -1,12 +1,18 @@
 //! Every case with every method.
 
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::{MarkdownTable, fixed, with_half};
 
 /// Errors of check points, cm or the object unit's hundredth.
-const ERRORS: [(&str, &str); 5] = [("rmse_x", "X"), ("rmse_y", "Y"), ("rmse_z", "Z"), ("rmse_xy", "planimetric"), ("rmse_xyz", "in space")];
+const ERRORS: [(Quantity, &str); 5] = [
+    (Quantity::RmseX, "X"),
+    (Quantity::RmseY, "Y"),
+    (Quantity::RmseZ, "Z"),
+    (Quantity::RmseXy, "planimetric"),
+    (Quantity::RmseXyz, "in space"),
+];
 
 /// A figure in hundredths of the object unit, with half the 95 % interval of its mean.
 pub fn hundredths(summary: Option<&Summary>) -> String {
@@ -20,14 +26,17 @@ pub fn table(found: &Summaries) -> String {
     let mut rows = MarkdownTable::new(&header.collect::<Vec<_>>());
     for set in &found.sets {
         for method in &found.methods {
-            let of = |group, name| found.of_set(method, set, group, name);
+            let of = |quantity: Quantity| found.of_set(method, set, quantity);
             let failed = found.failures(method, Some(set));
-            if of(Group::Check, "rmse_xyz").is_none() && (failed == 0 || !is_case(found, set)) {
+            if of(Quantity::RmseXyz).is_none() && (failed == 0 || !is_case(found, set)) {
                 continue;
             }
-            let errors = ERRORS.map(|(name, _)| hundredths(of(Group::Check, name)));
-            let camera = of(Group::Frame, "rms").and_then(|s| Some(with_half(s.value.mean()?, s.value.half(), 2))).unwrap_or_default();
-            let c = of(Group::Iop, "c").and_then(|s| s.square.mean()).map_or_else(String::new, |square| fixed(square.sqrt(), 3));
+            let errors = ERRORS.map(|(quantity, _)| hundredths(of(quantity)));
+            let camera = of(Quantity::OverFrame).and_then(|s| Some(with_half(s.value.mean()?, s.value.half(), 2))).unwrap_or_default();
+            let c = found
+                .of_set(method, set, Quantity::Parameter.of(&["c"]))
+                .and_then(|s| s.square.mean())
+                .map_or_else(String::new, |square| fixed(square.sqrt(), 3));
             rows.row([set.clone(), method.clone()].into_iter().chain(errors).chain([camera, c, failed.to_string()]));
         }
     }
@@ -50,5 +59,5 @@ pub fn table(found: &Summaries) -> String {
 }
 
 fn is_case(found: &Summaries, set: &str) -> bool {
-    found.methods.iter().any(|method| found.of_set(method, set, Group::Check, "rmse_xyz").is_some())
+    found.methods.iter().any(|method| found.of_set(method, set, Quantity::RmseXyz).is_some())
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use calibench_records::results::Group;
+use calibench_records::figures::Group;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -34,10 +34,11 @@ pub fn pictures(found: &Summaries) -> Vec<(String, Canvas)> {
 
 pub(super) fn vectors(found: &Summaries, method: &str, set: &str) -> Vectors {
     let mut points: BTreeMap<&str, ([f64; 3], [f64; 3])> = BTreeMap::new();
-    for ((m, s, group, name), summary) in &found.figures {
-        let is_meant = m == method && s == set && *group == Group::Object;
+    for ((m, s, name), summary) in &found.figures {
+        let is_meant = m == method && s == set && name.group() == Group::Object;
         // Other cases keep the points of the first trial alone, for the curious.
-        let (true, Some((target, axis)), Some(first)) = (is_meant && summary.value.count > 1, name.rsplit_once('/'), summary.first) else {
+        let (true, Some((target, axis)), Some(first)) = (is_meant && summary.value.count > 1, name.text().rsplit_once('/'), summary.first)
+        else {
             continue;
         };
         let (Some(axis), Some(error)) = (["X", "Y", "Z"].iter().position(|known| *known == axis), first.error) else { continue };

@@ -8,7 +8,7 @@ mod errors;
 mod tests;
 
 use calibench_records::description::Subject;
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 use rayon::prelude::*;
 
 use crate::LoadError;
@@ -76,5 +76,5 @@ pub fn sweep(loaded: &LoadedSweep, stem: &str) -> Result<Option<(String, Picture
 
 /// Scenarios that are adjusted where they are measured have no error in space.
 fn is_transfer(found: &Summaries) -> bool {
-    found.figures.keys().any(|(.., group, name)| *group == Group::Check && name == "rmse_xyz")
+    found.figures.keys().any(|(.., name)| name.quantity() == Quantity::RmseXyz)
 }

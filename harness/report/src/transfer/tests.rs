@@ -1,19 +1,20 @@
 //! Tables of calibrations that are applied elsewhere, from two trials whose figures are computed by hand: t(0.975, 1) = 12.7062.
 
 use calibench_records::adjustments::CalibrationWriter;
+use calibench_records::figures::{Group, Quantity};
 use calibench_records::points::RunInfo;
-use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
+use calibench_records::results::{Calibrated, Figure, MethodInfo};
 use calibench_records::stored::Table;
 use tempfile::TempDir;
 
 use super::{boards, cases, decomposition, errors, is_transfer};
 use crate::load::adjustments::{Summaries, load, load_with};
-use crate::tests::small::new_table;
+use crate::tests::small::{figure, new_table};
 
 const SETS: [&str; 2] = ["held", "split"];
 
 fn plain(group: Group, name: &str, value: f64) -> Figure {
-    Figure::plain(group, name, value, "m")
+    figure(group, name, value)
 }
 
 /// Errors of X, Y, Z 0.03, 0.04 and 0.12 m, larger by a tenth in the second trial; the camera is 2 and 4 px off, c by 0.3 and 0.4 mm.
@@ -21,12 +22,11 @@ fn held(number: usize) -> Vec<Figure> {
     let times = 1.0 + 0.1 * number as f64;
     let named = [("rmse_x", 0.03), ("rmse_y", 0.04), ("rmse_z", 0.12), ("rmse_xy", 0.05), ("rmse_xyz", 0.13)];
     let c =
-        Figure { group: Group::Iop, name: "c".into(), value: 19.0, sigma: Some(0.1), error: Some(0.3 + 0.1 * number as f64), unit: "mm" };
+        Figure { name: Quantity::Parameter.of(&["c"]), value: 19.0, sigma: Some(0.1), error: Some(0.3 + 0.1 * number as f64), unit: "mm" };
     let mut figures: Vec<Figure> = named.iter().map(|(name, value)| plain(Group::Check, name, times * value)).collect();
     figures.extend([c, plain(Group::Frame, "rms", 2.0 + 2.0 * number as f64)]);
     for (axis, value, error) in [("X", 1.03, 0.03), ("Y", 2.04, 0.04), ("Z", 3.12, 0.12)] {
-        let name = format!("V1/{axis}").into();
-        figures.push(Figure { group: Group::Object, name, value, sigma: None, error: Some(error), unit: "m" });
+        figures.push(Figure { error: Some(error), ..plain(Group::Object, &format!("V1/{axis}"), value) });
     }
     figures
 }

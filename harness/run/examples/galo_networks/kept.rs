@@ -5,7 +5,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use calibench_exchange::OutputFile;
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Figure, find};
 
 use crate::drawn::{Drawn, Noise};
 use crate::screened::{NAMES, PRINTED, Screened, scenario, sigmas, trials};
@@ -61,10 +62,9 @@ fn figures(drawn: &Drawn, screened: &Screened, totals: [f64; 3], all: [&[Figure]
         return None;
     }
     let step = |figures: &[Figure]| {
-        let of =
-            |name: &str| figures.iter().find(|figure| figure.group == Group::Check && &*figure.name == name).map(|figure| figure.value);
-        let distance = of("distance")?;
-        Some([of("rmse_xy_survey")? / distance, of("rmse_z_survey")? / distance])
+        let of = |quantity: Quantity| find(figures, quantity).map(|figure| figure.value);
+        let distance = of(Quantity::Distance)?;
+        Some([of(Quantity::RmseXySurvey)? / distance, of(Quantity::RmseZSurvey)? / distance])
     };
     let (coarse, fine) = (step(all[0])?, step(all[2])?);
     let mut row =

@@ -5,7 +5,8 @@ use std::sync::LazyLock;
 use calibench_measure::Registry;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose, Testfield};
-use calibench_records::results::{Figure, Group, Trial};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Figure, Trial, find};
 use calibench_run::Plan;
 use calibench_run::network::{ImagePoint, Job, Observed, Wanted, adjusted};
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
@@ -86,13 +87,13 @@ fn cofactors(views: &ViewsSubject, seen: &[Vec<usize>]) -> Option<[f64; 4]> {
     let observed = Observed { points, control: (0..views.field.targets.len()).map(place).collect() };
     let poses: Vec<Pose> = views.stations.iter().map(|station| station.pose).collect();
     let figures = adjusted(&job, &observed, 0, &NAMES, &poses, Wanted::Interior).ok()?.figures;
-    let sigma0 = figures.iter().find(|figure| &*figure.name == "sigma0")?.value / calibration.sigma_px;
+    let sigma0 = find(&figures, Quantity::Sigma0)?.value / calibration.sigma_px;
     Some(sigmas(&figures)?.map(|sigma| sigma / sigma0))
 }
 
 /// Reported standard deviations of the camera.
 pub fn sigmas(figures: &[Figure]) -> Option<[f64; 4]> {
-    let sigma = |name: &str| figures.iter().find(|figure| figure.group == Group::Iop && &*figure.name == name)?.sigma;
+    let sigma = |name: &str| find(figures, Quantity::Parameter.of(&[name]))?.sigma;
     let [c, x0, y0, k1] = NAMES.map(sigma);
     Some([c?, x0?, y0?, k1?])
 }

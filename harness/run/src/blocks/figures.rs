@@ -1,7 +1,8 @@
 //! What is reported of a block.
 
 use calibench_model::camera::CameraModel;
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 use calibench_scenario::Block;
 use nalgebra::{DMatrix, DVector};
 
@@ -14,39 +15,41 @@ pub fn counted(job: &Job<'_>, block: &Block, solved: &[Solved]) -> Vec<Figure> {
     let of = |one: &Solved| {
         let share = (one.observations - one.unknowns) as f64 / one.observations as f64;
         let counts = [
-            ("observations", one.observations as f64),
-            ("of them held", one.held as f64),
-            ("unknowns", one.unknowns as f64),
-            ("redundancy", one.observations as f64 - one.unknowns as f64),
-            ("share of redundancy", share),
-            ("images", one.images.len() as f64),
-            ("images without orientation", (one.chosen.len() - one.images.len()) as f64),
-            ("points", one.points.len() as f64),
-            ("image points", one.residuals.len() as f64),
-            ("gross errors", one.gross as f64),
-            ("iterations", one.iterations as f64),
+            (Quantity::Observations, one.observations as f64),
+            (Quantity::Held, one.held as f64),
+            (Quantity::Unknowns, one.unknowns as f64),
+            (Quantity::Redundancy, one.observations as f64 - one.unknowns as f64),
+            (Quantity::ShareOfRedundancy, share),
+            (Quantity::Images, one.images.len() as f64),
+            (Quantity::ImagesWithoutOrientation, (one.chosen.len() - one.images.len()) as f64),
+            (Quantity::Points, one.points.len() as f64),
+            (Quantity::ImagePoints, one.residuals.len() as f64),
+            (Quantity::GrossErrors, one.gross as f64),
+            (Quantity::Iterations, one.iterations as f64),
         ];
-        let sigma0 = one.sigma0_px.into_iter().flat_map(move |px| [("sigma0", px, "px"), ("sigma0 in um", px * pitch_um, "um")]);
-        counts.map(|(name, value)| (name, value, "")).into_iter().chain(sigma0).collect::<Vec<_>>()
+        let sigma0 =
+            one.sigma0_px.into_iter().flat_map(move |px| [(Quantity::Sigma0, px, "px"), (Quantity::Sigma0Um, px * pitch_um, "um")]);
+        counts.map(|(quantity, value)| (quantity, value, "")).into_iter().chain(sigma0).collect::<Vec<_>>()
     };
-    let plain = |name: String, value: f64, unit: &'static str| Figure::plain(Group::Network, name, value, unit);
     if !block.several {
-        let counts = solved.iter().flat_map(of).map(|(name, value, unit)| plain(name.into(), value, unit));
-        // Pixels to an object unit.
-        return counts.chain(solved.iter().map(|one| plain("image scale".into(), one.scale, "px"))).collect();
+        let counts = solved.iter().flat_map(of).map(|(quantity, value, unit)| Figure::plain(quantity, value, unit));
+        return counts.chain(solved.iter().map(|one| Figure::plain(Quantity::ImageScale, one.scale, "px"))).collect();
     }
     let each: Vec<_> = solved.iter().map(of).collect();
-    let mut figures = vec![plain("networks".into(), solved.len() as f64, "")];
+    let mut figures = vec![Figure::plain(Quantity::Networks, solved.len() as f64, "")];
     for (figure, unit) in each.first().into_iter().flatten().map(|(figure, _, unit)| (*figure, *unit)) {
-        let values: Vec<f64> = each.iter().filter_map(|one| one.iter().find(|(name, ..)| *name == figure)).map(|found| found.1).collect();
+        let values: Vec<f64> =
+            each.iter().filter_map(|one| one.iter().find(|(quantity, ..)| *quantity == figure)).map(|found| found.1).collect();
         let (least, most) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
-        figures.push(plain(figure.into(), values.iter().sum::<f64>() / values.len() as f64, unit));
-        figures.push(plain(format!("{figure}, least"), least, unit));
-        figures.push(plain(format!("{figure}, most"), most, unit));
+        figures.push(Figure::plain(figure, values.iter().sum::<f64>() / values.len() as f64, unit));
+        figures.push(Figure::plain(figure.least(), least, unit));
+        figures.push(Figure::plain(figure.most(), most, unit));
     }
     for (one, solved) in each.iter().zip(solved) {
-        let sigma0 = one.iter().find(|(name, ..)| *name == "sigma0");
-        figures.extend(sigma0.map(|&(_, value, unit)| plain(format!("sigma0/{}", name(job, &solved.chosen)), value, unit)));
+        let sigma0 = one.iter().find(|(quantity, ..)| *quantity == Quantity::Sigma0);
+        figures.extend(
+            sigma0.map(|&(_, value, unit)| Figure::plain(Quantity::Sigma0OfNetwork.of(&[&name(job, &solved.chosen)]), value, unit)),
+        );
     }
     figures
 }
@@ -57,8 +60,8 @@ pub fn parameters(one: &Solved) -> Vec<Figure> {
         let all = one.cameras[*group].parameters();
         let figure = |(name, sigma): &(&'static str, f64)| {
             let parameter = all.iter().find(|parameter| parameter.name == *name)?;
-            let name = format!("group {}/{name}", group + 1).into();
-            Some(Figure { group: Group::Iop, name, value: parameter.value, sigma: Some(*sigma), error: None, unit: parameter.unit })
+            let name = Quantity::ParameterOfGroup.of(&[&(group + 1).to_string(), name]);
+            Some(Figure { name, value: parameter.value, sigma: Some(*sigma), error: None, unit: parameter.unit })
         };
         sigmas.iter().filter_map(figure).collect::<Vec<_>>()
     };
@@ -74,16 +77,17 @@ pub fn by_image(job: &Job<'_>, one: &Solved) -> Vec<Figure> {
         axes = [axes[0] + x * x, axes[1] + y * y];
     }
     let rms = job.stations.iter().zip(squares).filter(|(_, (_, count))| *count > 0);
-    let rms = rms.map(|(station, (sum, count))| Figure::plain(Group::Residual, station.name.as_str(), (sum / count as f64).sqrt(), "px"));
-    let ratio = (axes[0] > 0.0).then(|| Figure::plain(Group::Network, "rows over columns", (axes[1] / axes[0]).sqrt(), ""));
+    let rms =
+        rms.map(|(station, (sum, count))| Figure::plain(Quantity::ImageResidual.of(&[&station.name]), (sum / count as f64).sqrt(), "px"));
+    let ratio = (axes[0] > 0.0).then(|| Figure::plain(Quantity::RowsOverColumns, (axes[1] / axes[0]).sqrt(), ""));
     rms.chain(ratio).collect()
 }
 
 /// Every residual.
 pub fn every_residual(job: &Job<'_>, one: &Solved) -> Vec<Figure> {
     let of = |(station, target, v): &(usize, usize, [f64; 2])| {
-        let point = format!("{}/{}", job.stations[*station].name, job.field.targets[*target].id);
-        [("x", v[0]), ("y", v[1])].map(|(axis, value)| Figure::plain(Group::Point, format!("{point}/{axis}"), value, "px"))
+        let of = [job.stations[*station].name.as_str(), job.field.targets[*target].id.as_str()];
+        [(Quantity::ResidualX, v[0]), (Quantity::ResidualY, v[1])].map(|(axis, value)| Figure::plain(axis.of(&of), value, "px"))
     };
     one.residuals.iter().flat_map(of).collect()
 }
@@ -92,8 +96,8 @@ pub fn every_residual(job: &Job<'_>, one: &Solved) -> Vec<Figure> {
 pub fn heights(job: &Job<'_>, one: &Solved) -> Vec<Figure> {
     let unit = job.unit.name();
     let of = |(target, at, sigma): &(usize, nalgebra::Point3<f64>, [f64; 3])| {
-        let name = format!("{}/Z", job.field.targets[*target].id).into();
-        Figure { group: Group::Object, name, value: at.z, sigma: Some(sigma[2]), error: None, unit }
+        let name = Quantity::ObjectZ.of(&[&job.field.targets[*target].id]);
+        Figure { name, value: at.z, sigma: Some(sigma[2]), error: None, unit }
     };
     one.points.iter().map(of).collect()
 }
@@ -112,5 +116,5 @@ pub fn bend(job: &Job<'_>, one: &Solved, over: f64) -> Result<[Figure; 2], Strin
     let heights = DVector::from_iterator(one.points.len(), one.points.iter().map(|point| point.1.z));
     let found = matrix.svd(true, true).solve(&heights, 1e-12).map_err(str::to_owned)?;
     let unit = job.unit.name();
-    Ok([("bend along X", 4), ("bend along Y", 5)].map(|(name, k)| Figure::plain(Group::Network, name, -found[k], unit)))
+    Ok([(Quantity::BendX, 4), (Quantity::BendY, 5)].map(|(quantity, k)| Figure::plain(quantity, -found[k], unit)))
 }

@@ -2,7 +2,8 @@
 
 use std::collections::HashSet;
 
-use calibench_records::results::{Figure, Group, Outcome, PointResult};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Figure, Outcome, PointResult};
 use calibench_scenario::Block;
 
 use super::Job;
@@ -20,13 +21,12 @@ pub fn figures(job: &Job<'_>, block: &Block, one: &Solved, points: &[PointResult
     let rms = (kept.iter().map(|(dx, dy)| dx * dx + dy * dy).sum::<f64>() / (2 * kept.len().max(1)) as f64).sqrt();
     let own: Vec<f64> = mine.iter().filter_map(|point| point.predicted).map(|sigma| sigma * sigma).collect();
     let internal = (!own.is_empty()).then(|| (own.iter().sum::<f64>() / (2 * own.len()) as f64).sqrt());
-    let plain = |name: &str, value: f64, unit: &'static str| Figure::plain(Group::Network, name, value, unit);
     let mut figures = vec![
-        plain("error of a coordinate", rms, "px"),
-        plain("lost", of_all(mine.iter().filter(|point| point.outcome.is_lost()).count()), ""),
-        plain("rejected", of_all(mine.iter().filter(|point| matches!(point.outcome, Outcome::Rejected(_))).count()), ""),
+        Figure::plain(Quantity::CoordinateError, rms, "px"),
+        Figure::plain(Quantity::Lost, of_all(mine.iter().filter(|point| point.outcome.is_lost()).count()), ""),
+        Figure::plain(Quantity::Rejected, of_all(mine.iter().filter(|point| matches!(point.outcome, Outcome::Rejected(_))).count()), ""),
     ];
-    figures.extend(internal.map(|sigma| plain("own sigma", sigma, "px")));
-    figures.extend(internal.zip(one.sigma0_px).map(|(sigma, sigma0)| plain("own sigma over sigma0", sigma / sigma0, "")));
+    figures.extend(internal.map(|sigma| Figure::plain(Quantity::OwnSigma, sigma, "px")));
+    figures.extend(internal.zip(one.sigma0_px).map(|(sigma, sigma0)| Figure::plain(Quantity::OwnSigmaOverSigma0, sigma / sigma0, "")));
     figures
 }

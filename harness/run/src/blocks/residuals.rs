@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 use calibench_scenario::ResidualPairs;
 
 use super::network::Solved;
@@ -33,16 +34,16 @@ pub fn compared(plan: &ResidualPairs, by_block: &[Residuals]) -> Result<Vec<Figu
     if within.is_empty() {
         return Err("no pair of images has a target in common".into());
     }
-    let figure = |name: &str, values: &[f64]| {
+    let figure = |quantity: Quantity, values: &[f64]| {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0)).sqrt();
         let sigma = (values.len() > 1).then(|| scatter / count.sqrt());
-        Figure { group: Group::Network, name: name.into(), value: mean, sigma, error: None, unit: "" }
+        Figure { name: quantity.into(), value: mean, sigma, error: None, unit: "" }
     };
-    let mut figures = vec![figure("correlation within pairs", &within), Figure::plain(Group::Network, "pairs", within.len() as f64, "")];
+    let mut figures = vec![figure(Quantity::CorrelationWithin, &within), Figure::plain(Quantity::Pairs, within.len() as f64, "")];
     if !across.is_empty() {
-        figures.push(figure("correlation across pairs", &across));
+        figures.push(figure(Quantity::CorrelationAcross, &across));
     }
     Ok(figures)
 }
@@ -61,6 +62,8 @@ fn correlation(all: &Residuals, first: usize, second: usize) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use calibench_records::results::find;
+
     use super::*;
 
     #[test]
@@ -75,7 +78,7 @@ mod tests {
         assert_eq!(correlation(&all, 0, 5), None);
         let plan = ResidualPairs { blocks: vec![0], pairs: vec![[0, 1], [1, 0]] };
         let figures = compared(&plan, &[all]).unwrap();
-        let value = |name: &str| figures.iter().find(|f| &*f.name == name).map(|f| f.value);
-        assert_eq!((value("pairs"), value("correlation within pairs")), (Some(2.0), Some(1.0)));
+        let value = |quantity: Quantity| find(&figures, quantity).map(|figure| figure.value);
+        assert_eq!((value(Quantity::Pairs), value(Quantity::CorrelationWithin)), (Some(2.0), Some(1.0)));
     }
 }

@@ -9,7 +9,8 @@ use calibench_calibrate::pose_of;
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 use nalgebra::Point3;
 
 use super::{Job, Observed, angles, discs};
@@ -112,13 +113,18 @@ fn interior_figures(job: &Job<'_>, solution: &Solution<'_>, covariances: &Covari
         let Some(row) = names.iter().position(|name| *name == parameter.name) else { continue };
         let error = truth.iter().find(|t| t.name == parameter.name).map(|t| parameter.value - t.value);
         let sigma = Some(matrix[(row, row)].max(0.0).sqrt());
-        figures.push(Figure { group: Group::Iop, name: parameter.name.into(), value: parameter.value, sigma, error, unit: parameter.unit });
+        figures.push(Figure {
+            name: Quantity::Parameter.of(&[parameter.name]),
+            value: parameter.value,
+            sigma,
+            error,
+            unit: parameter.unit,
+        });
     }
-    let plain = |name: &str, value: f64, unit| Figure::plain(Group::Network, name, value, unit);
-    figures.extend(solution.sigma0().map(|sigma0| plain("sigma0", sigma0 * job.calibration.sigma_px, "px")));
+    figures.extend(solution.sigma0().map(|sigma0| Figure::plain(Quantity::Sigma0, sigma0 * job.calibration.sigma_px, "px")));
     let counts = solution.counts();
-    figures.push(plain("redundancy", counts.redundancy() as f64, ""));
-    figures.push(plain("image points", counts.image_coordinates as f64 / 2.0, ""));
+    figures.push(Figure::plain(Quantity::Redundancy, counts.redundancy() as f64, ""));
+    figures.push(Figure::plain(Quantity::ImagePoints, counts.image_coordinates as f64 / 2.0, ""));
     figures
 }
 
@@ -126,21 +132,20 @@ fn rest(job: &Job<'_>, solution: &Solution<'_>, covariances: &Covariances) -> Ve
     let mut figures = Vec::new();
     let unit = job.unit.name();
     for ((station, pose), covariance) in job.stations.iter().zip(solution.poses()).zip(&covariances.poses) {
-        let figure = |name: &str, value, sigma, error, unit| Figure {
-            group: Group::Eop,
-            name: format!("{}/{name}", station.name).into(),
+        let figure = |quantity: Quantity, value, sigma, error, unit| Figure {
+            name: quantity.of(&[&station.name]),
             value,
             sigma,
             error: Some(error),
             unit,
         };
-        for (axis, name) in ["X0", "Y0", "Z0"].into_iter().enumerate() {
+        for (axis, name) in CENTRE.into_iter().enumerate() {
             let (value, sigma) = (pose.centre[axis], covariance[(axis, axis)].max(0.0).sqrt());
             figures.push(figure(name, value, Some(sigma), value - station.pose.centre[axis], unit));
         }
         let sigmas = angles::sigmas(pose, &covariance.fixed_view::<3, 3>(3, 3).into_owned());
         let (found, truth) = (pose.angles(), station.pose.angles());
-        for (k, name) in ["omega", "phi", "kappa"].into_iter().enumerate() {
+        for (k, name) in ANGLES.into_iter().enumerate() {
             let sigma = sigmas.map(|sigmas| sigmas[k].to_degrees());
             let error = angles::difference(found[k], truth[k]).to_degrees();
             figures.push(figure(name, found[k].to_degrees(), sigma, error, "deg"));
@@ -149,11 +154,14 @@ fn rest(job: &Job<'_>, solution: &Solution<'_>, covariances: &Covariances) -> Ve
     let options = DifferenceOptions { columns: FRAME_COLUMNS, ..DifferenceOptions::default() };
     if let Ok(found) = difference(job.camera, &solution.cameras()[0], &options) {
         let sigma = predicted(&solution.cameras()[0], covariances);
-        figures.push(Figure { group: Group::Frame, name: "rms".into(), value: found.spread.rms_px, sigma, error: None, unit: "px" });
+        figures.push(Figure { name: Quantity::OverFrame.into(), value: found.spread.rms_px, sigma, error: None, unit: "px" });
     }
     figures
 }
 
+/// The projection centre and the angles of an image.
+const CENTRE: [Quantity; 3] = [Quantity::CentreX, Quantity::CentreY, Quantity::CentreZ];
+const ANGLES: [Quantity; 3] = [Quantity::Omega, Quantity::Phi, Quantity::Kappa];
 /// Columns of the grid over which cameras are compared.
 const FRAME_COLUMNS: usize = 16;
 
@@ -175,13 +183,13 @@ fn residuals(job: &Job<'_>, solution: &Solution<'_>, wanted: Wanted) -> Vec<Figu
         let (sum, count) = &mut squares[residual.image];
         *sum += v[0] * v[0] + v[1] * v[1];
         *count += 2;
-        for (value, axis) in v.into_iter().zip(["x", "y"]).filter(|_| wanted == Wanted::Points) {
-            let name = format!("{}/{}/{axis}", network.images[residual.image].name, network.points[residual.point].name);
-            figures.push(Figure::plain(Group::Point, name, value, "px"));
+        for (value, of) in v.into_iter().zip([Quantity::ResidualX, Quantity::ResidualY]).filter(|_| wanted == Wanted::Points) {
+            let name = of.of(&[&network.images[residual.image].name, &network.points[residual.point].name]);
+            figures.push(Figure::plain(name, value, "px"));
         }
     }
     for (station, (sum, count)) in job.stations.iter().zip(squares).filter(|(_, (_, count))| *count > 0) {
-        figures.push(Figure::plain(Group::Residual, station.name.as_str(), (sum / count as f64).sqrt(), "px"));
+        figures.push(Figure::plain(Quantity::ImageResidual.of(&[&station.name]), (sum / count as f64).sqrt(), "px"));
     }
     figures
 }

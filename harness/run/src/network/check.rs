@@ -5,7 +5,8 @@ use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoin
 use calibench_calibrate::pose_of;
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 use calibench_scenario::calibration::CheckPlan;
 use nalgebra::Point3;
 
@@ -84,15 +85,14 @@ fn figures(job: &Job<'_>, plan: &CheckPlan, observed: &Observed, targets: &[usiz
     let sum: f64 = distances.map(|(view, target)| (job.stations[view].pose.centre - truth(target)).norm()).sum();
     let distance = sum / (count * plan.views.len() as f64);
     let unit = job.unit.name();
-    let plain = |name: &str, value: f64, unit| Figure::plain(Group::Check, name, value, unit);
     let [xy, z] = rmse(&truth);
     let [xy_survey, z_survey] = rmse(&surveyed);
     Ok(vec![
-        plain("rmse_xy", xy, unit),
-        plain("rmse_z", z, unit),
-        plain("rmse_xy_survey", xy_survey, unit),
-        plain("rmse_z_survey", z_survey, unit),
-        plain("distance", distance, unit),
-        plain("points", count, ""),
+        Figure::plain(Quantity::RmseXy, xy, unit),
+        Figure::plain(Quantity::RmseZ, z, unit),
+        Figure::plain(Quantity::RmseXySurvey, xy_survey, unit),
+        Figure::plain(Quantity::RmseZSurvey, z_survey, unit),
+        Figure::plain(Quantity::Distance, distance, unit),
+        Figure::plain(Quantity::CheckPoints, count, ""),
     ])
 }

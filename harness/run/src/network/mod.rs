@@ -12,7 +12,8 @@ mod seen;
 
 use calibench_model::Pose;
 use calibench_random::Key;
-use calibench_records::results::{Calibrated, Figure, Group, PointResult};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Calibrated, Figure, PointResult};
 
 #[cfg(test)]
 pub(crate) use adjustment::control_point;
@@ -68,7 +69,7 @@ fn one(
     let outcome = result.map(|adjusted| {
         let mut figures = adjusted.figures;
         if seen.left_out > 0 {
-            figures.push(Figure::plain(Group::Network, "images left out", seen.left_out as f64, ""));
+            figures.push(Figure::plain(Quantity::ImagesLeftOut, seen.left_out as f64, ""));
         }
         poses = Some(adjusted.poses);
         if let Some(plan) = job.calibration.check.as_ref().filter(|_| set == 0) {

@@ -3,12 +3,13 @@
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Fold, Photogrammetric, fold};
 use calibench_model::convert::{ConvertOptions, DifferenceOptions, Region, Tangential, Target, convert, difference, from_naive, naive};
+use calibench_records::figures::Quantity;
 use calibench_records::results::Figure;
 use calibench_scenario::Printed;
 use calibench_scenario::printed::{Column, Variant};
 
-use super::figure;
-
+/// By which power of c the radial coefficients are divided.
+const POWERS: [Quantity; 3] = [Quantity::PowerK1, Quantity::PowerK2, Quantity::PowerK3];
 /// Columns and rows of the grid on which an inverse is tried.
 const GRID: (usize, usize) = (61, 41);
 
@@ -18,23 +19,23 @@ const GRID: (usize, usize) = (61, 41);
 /// In words: a camera that cannot be converted or compared.
 pub fn figures(printed: &Printed, column: &Column) -> Result<Vec<Figure>, String> {
     let camera = column.camera;
-    let mut all = vec![figure("c less that of the first column", camera.c - printed.cameras[0].camera.c, "mm")];
-    folded("fold as a correction", &camera.into(), camera.pitch_um, &mut all);
-    all.push(figure("error of the inverse", round_trip(&camera.into()), "px"));
+    let mut all = vec![Figure::plain(Quantity::LessFirst, camera.c - printed.cameras[0].camera.c, "mm")];
+    folded([Quantity::FoldCorrectionRadius, Quantity::FoldCorrectionShare], &camera.into(), camera.pitch_um, &mut all);
+    all.push(Figure::plain(Quantity::InverseError, round_trip(&camera.into()), "px"));
     let Some(tool) = column.target() else { return Ok(all) };
     let told = |error: calibench_model::convert::ConvertError| format!("{}: {error}", column.name);
     all.extend(scheme(&camera, tool).map_err(told)?);
     let own = from_naive(&camera, tool, Tangential::Converted).map_err(told)?;
-    folded("fold of the tool's own", &own, camera.pitch_um, &mut all);
+    folded([Quantity::FoldOwnRadius, Quantity::FoldOwnShare], &own, camera.pitch_um, &mut all);
     all.extend(direct(printed, &camera, &own).map_err(told)?);
     Ok(all)
 }
 
 /// Where a camera folds over inside the frame, if it does.
-fn folded(name: &str, camera: &Camera, pitch_um: f64, all: &mut Vec<Figure>) {
+fn folded([radius, of_frame]: [Quantity; 2], camera: &Camera, pitch_um: f64, all: &mut Vec<Figure>) {
     if let Some(Fold { radius_px, share }) = fold(camera) {
-        all.push(figure(format!("{name}, radius"), radius_px * pitch_um * 1e-3, "mm"));
-        all.push(figure(format!("{name}, share of the frame"), 100.0 * share, "%"));
+        all.push(Figure::plain(radius, radius_px * pitch_um * 1e-3, "mm"));
+        all.push(Figure::plain(of_frame, 100.0 * share, "%"));
     }
 }
 
@@ -55,13 +56,14 @@ fn scheme(camera: &Photogrammetric, tool: Target) -> Result<Vec<Figure>, caliben
     // Twice the pitch is twice the principal distance of the same tool's camera.
     let [once, twice] = [camera.pitch_um, 2.0 * camera.pitch_um].map(|um| naive(&own, um, Tangential::Converted));
     let (once, twice) = (once?, twice?);
-    let powers = (0..3).map(|i| figure(format!("k{}: power of c", i + 1), -(twice.k[i] / once.k[i]).log2(), ""));
+    let powers = (0..3).map(|i| Figure::plain(POWERS[i], -(twice.k[i] / once.k[i]).log2(), ""));
     let mut all: Vec<Figure> = powers.collect();
-    for (which, p) in [("first", [1e-4, 0.0]), ("second", [0.0, 1e-4])] {
+    for (of, p) in [([Quantity::P1OfFirst, Quantity::P2OfFirst], [1e-4, 0.0]), ([Quantity::P1OfSecond, Quantity::P2OfSecond], [0.0, 1e-4])]
+    {
         // As printed, p1 is the tool's first over c: this is the tool's camera with that coefficient alone.
         let own = from_naive(&Photogrammetric { p, ..probe }, tool, Tangential::AsPrinted)?;
         let made = naive(&own, camera.pitch_um, Tangential::Converted)?.p;
-        all.extend((0..2).map(|i| figure(format!("p{}: of the {which}", i + 1), made[i] / 1e-4, "")));
+        all.extend((0..2).map(|i| Figure::plain(of[i], made[i] / 1e-4, "")));
     }
     Ok(all)
 }
@@ -76,14 +78,14 @@ fn direct(printed: &Printed, camera: &Photogrammetric, own: &Camera) -> Result<V
     let turned = difference(own, &(*camera).into(), &over)?;
     let unit = printed.unit.name();
     Ok(vec![
-        figure("exact conversion, rms", exact.residual.rms_px, "px"),
-        figure("exact conversion, most", exact.residual.max_px, "px"),
-        figure("direct conversion, rms", as_is.spread.rms_px, "px"),
-        figure("direct conversion, most", as_is.spread.max_px, "px"),
-        figure("direct conversion, rms after rotation", turned.spread.rms_px, "px"),
-        figure("direct conversion, most after rotation", turned.spread.max_px, "px"),
-        figure("direct conversion, rms on the object", as_is.on_object(as_is.spread.rms_px, printed.distance), unit),
-        figure("direct conversion, most on the object", as_is.on_object(as_is.spread.max_px, printed.distance), unit),
+        Figure::plain(Quantity::ExactRms, exact.residual.rms_px, "px"),
+        Figure::plain(Quantity::ExactMost, exact.residual.max_px, "px"),
+        Figure::plain(Quantity::DirectRms, as_is.spread.rms_px, "px"),
+        Figure::plain(Quantity::DirectMost, as_is.spread.max_px, "px"),
+        Figure::plain(Quantity::DirectRmsTurned, turned.spread.rms_px, "px"),
+        Figure::plain(Quantity::DirectMostTurned, turned.spread.max_px, "px"),
+        Figure::plain(Quantity::DirectRmsOnObject.of(&[unit]), as_is.on_object(as_is.spread.rms_px, printed.distance), unit),
+        Figure::plain(Quantity::DirectMostOnObject.of(&[unit]), as_is.on_object(as_is.spread.max_px, printed.distance), unit),
     ])
 }
 
@@ -102,12 +104,12 @@ pub fn varied(printed: &Printed, variant: &Variant) -> Result<Vec<Figure>, Strin
     let region = radius.map_or(Region::Frame, |px| Region::Radius { px });
     let over = DifferenceOptions { region, ..DifferenceOptions::default() };
     let found = difference(&base, &variant.camera.into(), &over).map_err(|error| format!("{}: {error}", variant.name))?;
-    let spread = found.spread;
-    let radius = radius.map(|px| figure("compared within", px, "px"));
+    let (spread, unit) = (found.spread, printed.unit.name());
+    let radius = radius.map(|px| Figure::plain(Quantity::ComparedWithin, px, "px"));
     let all = [
-        figure("difference, rms after rotation", spread.rms_px, "px"),
-        figure("difference, most after rotation", spread.max_px, "px"),
-        figure("difference, rms on the object", found.on_object(spread.rms_px, printed.distance), printed.unit.name()),
+        Figure::plain(Quantity::DifferenceRms, spread.rms_px, "px"),
+        Figure::plain(Quantity::DifferenceMost, spread.max_px, "px"),
+        Figure::plain(Quantity::DifferenceOnObject.of(&[unit]), found.on_object(spread.rms_px, printed.distance), unit),
     ];
     Ok(all.into_iter().chain(radius).collect())
 }

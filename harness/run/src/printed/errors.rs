@@ -1,20 +1,21 @@
 //! Errors of check points and their root mean squares.
 
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 use calibench_scenario::Printed;
 use nalgebra::Vector3;
 
-use super::with_unit;
 use crate::rmse::Rmse;
 
-/// The axes of object space.
-pub const AXES: [&str; 3] = ["X", "Y", "Z"];
-
 /// Root mean squares of errors: by axis, in the plane of X and Y (2D), in space; object units.
-pub fn root_mean_squares(errors: &[Vector3<f64>]) -> [(&'static str, f64); 5] {
+pub fn root_mean_squares(errors: &[Vector3<f64>]) -> [f64; 5] {
     let Rmse { axes: [x, y, z], planimetric, spatial } = Rmse::of(errors.iter().copied());
-    [("RMSE X", x), ("RMSE Y", y), ("RMSE Z", z), ("planimetric RMSE", planimetric), ("spatial RMSE", spatial)]
+    [x, y, z, planimetric, spatial]
 }
+
+/// Those of printed errors.
+const PRINTED: [Quantity; 5] =
+    [Quantity::PrintedX, Quantity::PrintedY, Quantity::PrintedZ, Quantity::PrintedPlanimetric, Quantity::PrintedSpatial];
 
 /// Those of the printed errors of a column.
 pub fn recomputed(printed: &Printed, column: usize) -> Vec<Figure> {
@@ -23,5 +24,6 @@ pub fn recomputed(printed: &Printed, column: usize) -> Vec<Figure> {
         return Vec::new();
     }
     let unit = printed.unit.name();
-    root_mean_squares(&errors).map(|(name, value)| Figure::plain(Group::Check, with_unit(name, unit), value, unit)).into()
+    let values = PRINTED.into_iter().zip(root_mean_squares(&errors));
+    values.map(|(quantity, value)| Figure::plain(quantity.of(&[unit]), value, unit)).collect()
 }

@@ -8,7 +8,8 @@ mod predicted;
 #[cfg(test)]
 mod tests;
 
-use calibench_records::results::{Calibrated, Figure, Group, Trial};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Calibrated, Figure, Trial};
 use calibench_scenario::Printed;
 
 use predicted::Predictions;
@@ -49,19 +50,11 @@ fn with_predicted(own: Result<Vec<Figure>, String>, predicted: Option<Result<Vec
     }
 }
 
-/// A figure of the whole; its name ends with its unit, as pages show it.
-fn figure(name: impl std::fmt::Display, value: f64, unit: &'static str) -> Figure {
-    Figure::plain(Group::Network, with_unit(name, unit), value, unit)
-}
-
-fn with_unit(name: impl std::fmt::Display, unit: &str) -> String {
-    if unit.is_empty() { name.to_string() } else { format!("{name}, {unit}") }
-}
-
 /// Pixel pitches, the number of pixels and of check points.
 fn sensor(printed: &Printed) -> Vec<Figure> {
-    let pitches = printed.pitches.iter().map(|(name, um)| figure(name, *um, "um"));
+    let pitches = printed.pitches.iter().map(|(name, um)| Figure::plain(Quantity::Pitch.of(&[name]), *um, "um"));
     let size = printed.cameras[0].camera.size;
     let pixels = f64::from(size.width) * f64::from(size.height) * 1e-6;
-    pitches.chain([figure("million pixels", pixels, ""), figure("check points", printed.points.len() as f64, "")]).collect()
+    let points = printed.points.len() as f64;
+    pitches.chain([Figure::plain(Quantity::MillionPixels, pixels, ""), Figure::plain(Quantity::PrintedCheckPoints, points, "")]).collect()
 }

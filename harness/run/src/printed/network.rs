@@ -3,14 +3,24 @@
 use calibench_adjust::approximate::{Sight, intersect};
 use calibench_model::camera::{Camera, CameraModel, Photogrammetric};
 use calibench_model::{Frame, PixelPoint, Pose, SensorPoint};
+use calibench_records::figures::Quantity;
 use calibench_scenario::printed::{CheckPoint, NetworkPlan};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// The numbers of a network.
 pub const NUMBERS: usize = 9;
 /// What they are, in their order.
-pub const NAMES: [&str; NUMBERS] =
-    ["distance", "curve", "half base", "shift", "height", "height step", "aim to the right", "aim spread", "aim upwards"];
+pub const NUMBERS_OF: [Quantity; NUMBERS] = [
+    Quantity::SiteDistance,
+    Quantity::SiteCurve,
+    Quantity::SiteHalfBase,
+    Quantity::SiteShift,
+    Quantity::SiteHeight,
+    Quantity::SiteHeightStep,
+    Quantity::SiteAimToTheRight,
+    Quantity::SiteAimSpread,
+    Quantity::SiteAimUpwards,
+];
 /// Rays that meet at less are parallel, rad.
 const PARALLEL: f64 = 1e-3;
 

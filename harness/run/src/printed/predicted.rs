@@ -3,16 +3,16 @@
 use calibench_model::Frame;
 use calibench_model::camera::{Camera, Photogrammetric};
 use calibench_model::convert::{Tangential, from_naive};
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 use calibench_scenario::Printed;
 use calibench_scenario::printed::{NetworkPlan, Variant};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::errors::{AXES, root_mean_squares};
+use super::errors::root_mean_squares;
 use super::fit::least_squares;
-use super::network::{NAMES, NUMBERS, Pictures, Site};
-use super::{figure, with_unit};
+use super::network::{NUMBERS, NUMBERS_OF, Pictures, Site};
 
 /// Length of a difference, as a part of the distance.
 const DIFFERENCE: f64 = 1e-6;
@@ -20,8 +20,19 @@ const DIFFERENCE: f64 = 1e-6;
 const ROUGH: f64 = 1e-3;
 /// Where the best ends.
 const FINE: f64 = 1e-9;
-/// The angles of an exterior orientation.
-const ANGLES: [&str; 3] = ["omega", "phi", "kappa"];
+/// Place and angles of a station.
+const STATION: [Quantity; 3] = [Quantity::StationX, Quantity::StationY, Quantity::StationZ];
+const ANGLES: [Quantity; 3] = [Quantity::Omega, Quantity::Phi, Quantity::Kappa];
+/// The predicted error of a point, by axis.
+const ERRORS: [Quantity; 3] = [Quantity::ObjectX, Quantity::ObjectY, Quantity::ObjectZ];
+/// Root mean squares of predicted errors: alone, and of a column among others.
+const PREDICTED: [[Quantity; 2]; 5] = [
+    [Quantity::PredictedX, Quantity::PredictedXOf],
+    [Quantity::PredictedY, Quantity::PredictedYOf],
+    [Quantity::PredictedZ, Quantity::PredictedZOf],
+    [Quantity::PredictedPlanimetric, Quantity::PredictedPlanimetricOf],
+    [Quantity::PredictedSpatial, Quantity::PredictedSpatialOf],
+];
 /// Starts whose misfit is within this factor of the least one end at the same network.
 const SAME: f64 = 1.01;
 
@@ -60,22 +71,21 @@ impl<'a> Predictions<'a> {
     /// The network itself: its numbers, its stations with their exterior orientations, how well it fits.
     pub fn network(&self) -> Vec<Figure> {
         let unit = self.printed.unit.name();
-        let numbers =
-            NAMES.iter().zip(self.fitted.numbers).map(|(name, value)| Figure::plain(Group::Eop, with_unit(name, unit), value, unit));
+        let numbers = NUMBERS_OF.iter().zip(self.fitted.numbers).map(|(number, value)| Figure::plain(number.of(&[unit]), value, unit));
         let stations = self.fitted.pictures.iter().enumerate().flat_map(|(index, (pose, _))| {
             let centre = self.site.middle() + pose.centre.coords;
             let angles = pose.angles().map(f64::to_degrees);
-            let plain = move |name: &str, value, unit| Figure::plain(Group::Eop, format!("{}/{name}", index + 1), value, unit);
-            let place = (0..3).map(move |axis| plain(AXES[axis], centre[axis], unit));
+            let plain = move |quantity: Quantity, value, unit| Figure::plain(quantity.of(&[&(index + 1).to_string()]), value, unit);
+            let place = (0..3).map(move |axis| plain(STATION[axis], centre[axis], unit));
             place.chain((0..3).map(move |axis| plain(ANGLES[axis], angles[axis], "deg")))
         });
         let [starts, same] = self.fitted.starts.map(|count| count as f64);
         let seen = self.fitted.pictures.iter().flat_map(|(_, seen)| seen).flatten().count() as f64;
         let whole = [
-            figure("misfit of what is fitted", self.fitted.misfit, unit),
-            figure("starts", starts, ""),
-            figure("starts that end here", same, ""),
-            figure("image points", seen, ""),
+            Figure::plain(Quantity::MisfitFitted.of(&[unit]), self.fitted.misfit, unit),
+            Figure::plain(Quantity::Starts, starts, ""),
+            Figure::plain(Quantity::StartsAlike, same, ""),
+            Figure::plain(Quantity::ImagePoints, seen, ""),
         ];
         whole.into_iter().chain(numbers).chain(stations).collect()
     }
@@ -88,10 +98,13 @@ impl<'a> Predictions<'a> {
         let camera = &self.printed.cameras[column].camera;
         let errors = self.site.errors(&self.fitted.pictures, camera)?;
         let unit = self.printed.unit.name();
-        let points = self.printed.points.iter().zip(&errors).flat_map(|(point, error)| {
-            (0..3).map(move |axis| Figure::plain(Group::Object, format!("{}/{}", point.name, AXES[axis]), error[axis].abs(), unit))
-        });
-        Ok(self.means("", column, &errors).into_iter().chain(points).collect())
+        let points = self
+            .printed
+            .points
+            .iter()
+            .zip(&errors)
+            .flat_map(|(point, error)| (0..3).map(move |axis| Figure::plain(ERRORS[axis].of(&[&point.name]), error[axis].abs(), unit)));
+        Ok(self.means(None, column, &errors).into_iter().chain(points).collect())
     }
 
     /// What is predicted of a changed camera in this network; or, in one that is fitted again, of all columns.
@@ -100,29 +113,34 @@ impl<'a> Predictions<'a> {
     /// In words: points whose rays do not meet.
     pub fn variant(&self, variant: &Variant) -> Result<Vec<Figure>, String> {
         if !variant.refit {
-            return Ok(self.means("", variant.of, &self.site.errors(&self.fitted.pictures, &variant.camera)?));
+            return Ok(self.means(None, variant.of, &self.site.errors(&self.fitted.pictures, &variant.camera)?));
         }
         let mut cameras: Vec<Photogrammetric> = self.printed.cameras.iter().map(|column| column.camera).collect();
         cameras[variant.of] = variant.camera;
         let again = fit(self.printed, self.plan, &self.site, &cameras)?;
+        let unit = self.printed.unit.name();
         let mut all = vec![
-            figure("misfit of what is fitted", again.misfit, self.printed.unit.name()),
-            figure("misfit over that of the printed cameras", again.misfit / self.fitted.misfit, ""),
+            Figure::plain(Quantity::MisfitFitted.of(&[unit]), again.misfit, unit),
+            Figure::plain(Quantity::MisfitOverPrinted, again.misfit / self.fitted.misfit, ""),
         ];
         for (index, (column, camera)) in self.printed.cameras.iter().zip(&cameras).enumerate() {
             let errors = self.site.errors(&again.pictures, camera)?;
-            all.extend(self.means(&format!("{}: ", column.name), index, &errors));
+            all.extend(self.means(Some(&column.name), index, &errors));
         }
         Ok(all)
     }
 
-    /// Root mean squares of predicted errors, and of their misfits to the printed ones of `column`; names begin with `begin`.
-    fn means(&self, begin: &str, column: usize, errors: &[Vector3<f64>]) -> Vec<Figure> {
+    /// Root mean squares of predicted errors, and of their misfits to the printed ones of `column`; `name` is the column's, where those of all stand together.
+    fn means(&self, name: Option<&str>, column: usize, errors: &[Vector3<f64>]) -> Vec<Figure> {
         let unit = self.printed.unit.name();
-        let means = root_mean_squares(errors).map(|(name, value)| figure(format!("{begin}predicted {name}"), value, unit));
+        let of = |[alone, of_column]: [Quantity; 2], value| {
+            let figure = name.map_or_else(|| alone.of(&[unit]), |name| of_column.of(&[name, unit]));
+            Figure::plain(figure, value, unit)
+        };
+        let means = PREDICTED.into_iter().zip(root_mean_squares(errors)).map(|(quantities, value)| of(quantities, value));
         let misfits = misfits(self.printed, column, errors);
         let misfit = (misfits.iter().map(|m| m * m).sum::<f64>() / misfits.len() as f64).sqrt();
-        means.into_iter().chain([figure(format!("{begin}misfit"), misfit, unit)]).collect()
+        means.chain([of([Quantity::Misfit, Quantity::MisfitOf], misfit)]).collect()
     }
 }
 

@@ -4,7 +4,8 @@ use calibench_measure::Registry;
 use calibench_model::camera::{Camera, Photogrammetric};
 use calibench_model::convert::{Tangential, Target, from_naive};
 use calibench_model::{Frame, Pose};
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Group;
+use calibench_records::results::Figure;
 use calibench_scenario::{Printed, Subject, parse};
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -27,7 +28,7 @@ fn printed() -> Printed {
 /// A figure by set and name.
 fn value(all: &[Vec<Figure>], printed: &Printed, set: &str, group: Group, name: &str) -> f64 {
     let place = printed.sets().iter().position(|other| other == set).unwrap();
-    let found = all[place].iter().find(|figure| figure.group == group && &*figure.name == name);
+    let found = all[place].iter().find(|figure| figure.name.group() == group && figure.name.text() == name);
     found.unwrap_or_else(|| panic!("no `{name}` in {set}: {:?}", all[place].iter().map(|f| &f.name).collect::<Vec<_>>())).value
 }
 
@@ -40,8 +41,8 @@ fn near(found: f64, expected: f64, within: f64) {
 fn root_mean_squares_are_those_by_hand() {
     let found = root_mean_squares(&[Vector3::new(3.0, -4.0, 0.0), Vector3::new(0.0, 0.0, 12.0)]);
     let expected = [4.5, 8.0, 72.0, 12.5, 84.5].map(f64::sqrt);
-    for ((name, value), expected) in found.into_iter().zip(expected) {
-        assert!((value - expected).abs() < 1e-14, "{name}: {value} is not {expected}");
+    for (value, expected) in found.into_iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
     }
 }
 

@@ -5,7 +5,8 @@ use std::io::{self, Read, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use calibench_model::{PixelPoint, Rejection};
-use calibench_records::results::{Calibrated, Figure, Group, Outcome, PointResult};
+use calibench_records::figures::{FigureNames, Group};
+use calibench_records::results::{Calibrated, Figure, Outcome, PointResult};
 use calibench_store::{Found, NewEntry};
 use serde::{Deserialize, Serialize};
 
@@ -172,8 +173,8 @@ fn point_wire(point: &PointResult, numbers: &mut Numbers) -> PointWire {
 
 fn calibrated_wire(one: &Calibrated, numbers: &mut Numbers) -> CalibratedWire {
     let mut figure = |figure: &Figure| FigureWire {
-        group: place(&Group::ALL, |(known, _)| *known == figure.group),
-        name: numbers.of(&figure.name),
+        group: place(&Group::ALL, |(known, _)| *known == figure.name.group()),
+        name: numbers.of(figure.name.shared()),
         value: figure.value,
         sigma: figure.sigma,
         error: figure.error,
@@ -192,12 +193,13 @@ fn place<T>(all: &[T], is: impl Fn(&T) -> bool) -> u8 {
 pub struct FrameReader {
     found: Found,
     names: Vec<Arc<str>>,
+    figures: FigureNames,
 }
 
 impl FrameReader {
     /// From what was `found`.
     pub fn new(found: Found) -> Self {
-        Self { found, names: Vec::new() }
+        Self { found, names: Vec::new(), figures: FigureNames::default() }
     }
 
     /// The next one.
@@ -214,8 +216,9 @@ impl FrameReader {
         self.frame(wire).ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, "an entry of the store names what there is not"))
     }
 
-    fn frame(&self, wire: FrameWire) -> Option<Frame> {
-        let name = |number: u32| self.names.get(number as usize).cloned();
+    fn frame(&mut self, wire: FrameWire) -> Option<Frame> {
+        let (names, figures) = (&self.names, &mut self.figures);
+        let name = |number: u32| names.get(number as usize).cloned();
         let point = |wire: PointWire| {
             let outcome = match wire.outcome {
                 OutcomeWire::Measured(x, y) => Outcome::Measured { position: PixelPoint::new(x, y), error: None },
@@ -227,14 +230,15 @@ impl FrameReader {
                 ..PointResult::new(name(wire.view)?, name(wire.target)?, wire.method as usize, outcome)
             })
         };
-        let figure = |wire: FigureWire| {
+        let mut figure = |wire: FigureWire| {
             let (group, _) = *Group::ALL.get(usize::from(wire.group))?;
             let FigureWire { value, sigma, error, .. } = wire;
-            Some(Figure { group, name: name(wire.name)?, value, sigma, error, unit: unit(&name(wire.unit)?) })
+            let (_, figure) = figures.get(group, &name(wire.name)?).ok()?;
+            Some(Figure { name: figure, value, sigma, error, unit: unit(&name(wire.unit)?) })
         };
-        let calibrated = |wire: CalibratedWire| {
+        let mut calibrated = |wire: CalibratedWire| {
             let outcome = match wire.outcome {
-                Ok(figures) => Ok(figures.into_iter().map(figure).collect::<Option<Vec<_>>>()?),
+                Ok(figures) => Ok(figures.into_iter().map(&mut figure).collect::<Option<Vec<_>>>()?),
                 Err(why) => Err(why),
             };
             Some(Calibrated { method: wire.method as usize, set: wire.set as usize, outcome, check_failed: wire.check_failed })
@@ -242,8 +246,8 @@ impl FrameReader {
         Some(Frame {
             points: wire.points.into_iter().map(point).collect::<Option<_>>()?,
             missed_views: wire.missed_views.into_iter().map(|(view, why)| Some((name(view)?, why))).collect::<Option<_>>()?,
-            adjusted: wire.adjusted.into_iter().map(calibrated).collect::<Option<_>>()?,
-            counted: wire.counted.into_iter().map(calibrated).collect::<Option<_>>()?,
+            adjusted: wire.adjusted.into_iter().map(&mut calibrated).collect::<Option<_>>()?,
+            counted: wire.counted.into_iter().map(&mut calibrated).collect::<Option<_>>()?,
             common: wire.common,
             bounds: wire.bounds,
         })

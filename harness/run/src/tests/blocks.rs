@@ -1,6 +1,7 @@
 //! Free blocks of a wall on a stand whose corners are drawn from the truth without error: what the figures of each block must be is known.
 
-use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_records::figures::Group;
+use calibench_records::results::{Calibrated, Figure};
 use calibench_scenario::Scenario;
 
 use super::recordings::on_stand;
@@ -43,7 +44,7 @@ fn figures(found: &[Calibrated], set: usize) -> &[Figure] {
 }
 
 fn value(found: &[Calibrated], set: usize, name: &str) -> f64 {
-    let figure = figures(found, set).iter().find(|figure| figure.group == Group::Network && &*figure.name == name);
+    let figure = figures(found, set).iter().find(|figure| figure.name.group() == Group::Network && figure.name.text() == name);
     figure.unwrap_or_else(|| panic!("no {name}: {:?}", figures(found, set))).value
 }
 
@@ -68,8 +69,8 @@ fn a_bend_is_in_the_residuals_unless_every_group_has_its_parameters() {
     assert!(plain > 0.05 && sets < 0.2 * plain, "{plain} {sets}");
     assert!(corrected < 1.05 * sets && one > 3.0 * sets, "{sets} {corrected} {one}");
     assert!((value(&found, 0, "sigma0 in um") / plain - 5.0).abs() < 1e-9);
-    let named = figures(&found, 1).iter().filter(|figure| figure.group == Group::Iop);
-    let named: Vec<&str> = named.map(|figure| &*figure.name).collect();
+    let named = figures(&found, 1).iter().filter(|figure| figure.name.group() == Group::Iop);
+    let named: Vec<&str> = named.map(|figure| figure.name.text()).collect();
     assert_eq!((named.len(), named[0], named[47]), (48, "group 1/e1", "group 4/e12"));
 }
 
@@ -81,7 +82,7 @@ fn images_of_one_bend_give_it_back() {
     assert!((along - 0.002).abs() < 4e-5 && across.abs() < 4e-5, "{along} {across}");
     assert!(sigma0 < 1e-3, "{sigma0}");
     assert_eq!(value(&found, 0, "images"), 8.0);
-    let heights = figures(&found, 0).iter().filter(|figure| figure.group == Group::Object).count();
+    let heights = figures(&found, 0).iter().filter(|figure| figure.name.group() == Group::Object).count();
     assert_eq!(heights as f64, POINTS);
 }
 
@@ -110,6 +111,6 @@ fn one_local_distortion_is_common_to_images_of_one_view() {
     let found = blocks("", local, &listed);
     let [within, across, pairs] = ["correlation within pairs", "correlation across pairs", "pairs"].map(|name| value(&found, 1, name));
     assert!(pairs == 8.0 && within > across + 0.2, "{pairs} {within} {across}");
-    let each = figures(&found, 0).iter().filter(|figure| figure.group == Group::Point).count();
+    let each = figures(&found, 0).iter().filter(|figure| figure.name.group() == Group::Point).count();
     assert_eq!(each as f64, 2.0 * IMAGES * POINTS);
 }

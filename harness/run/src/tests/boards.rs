@@ -1,7 +1,8 @@
 //! Boards that their detectors find, and what a calibration makes of what is missed.
 
 use calibench_measure::Registry;
-use calibench_records::results::{Calibrated, Group, Outcome, Trial};
+use calibench_records::figures::Group;
+use calibench_records::results::{Calibrated, Outcome, Trial};
 use calibench_scenario::{Scenario, parse};
 
 use super::trials;
@@ -62,13 +63,13 @@ fn first(scenario: &Scenario) -> Trial {
 
 fn value(calibrated: &Calibrated, group: Group, name: &str) -> Option<f64> {
     let figures = calibrated.outcome.as_ref().unwrap_or_else(|why| panic!("{why}"));
-    figures.iter().find(|figure| figure.group == group && &*figure.name == name).map(|figure| figure.value)
+    figures.iter().find(|figure| figure.name.group() == group && figure.name.text() == name).map(|figure| figure.value)
 }
 
 /// How far the camera is from the true one over the frame, px, and what is predicted of that.
 fn frame(trial: &Trial) -> (f64, f64) {
     let figures = trial.calibrations[0].outcome.as_ref().unwrap();
-    let rms = figures.iter().find(|figure| figure.group == Group::Frame).unwrap();
+    let rms = figures.iter().find(|figure| figure.name.group() == Group::Frame).unwrap();
     (rms.value, rms.sigma.unwrap())
 }
 

@@ -3,7 +3,8 @@
 use calibench_adjust::ObjectPoint;
 use calibench_model::{PixelPoint, Pose};
 use calibench_random::Key;
-use calibench_records::results::{Calibrated, Figure, Group, PointResult};
+use calibench_records::figures::Group;
+use calibench_records::results::{Calibrated, Figure, PointResult};
 use calibench_scenario::Calibration;
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -19,7 +20,7 @@ fn with_job(test: impl FnOnce(&Job<'_>, &[PointResult])) {
 }
 
 fn figure<'a>(figures: &'a [Figure], group: Group, name: &str) -> &'a Figure {
-    figures.iter().find(|figure| figure.group == group && &*figure.name == name).unwrap_or_else(|| panic!("{name}"))
+    figures.iter().find(|figure| figure.name.group() == group && figure.name.text() == name).unwrap_or_else(|| panic!("{name}"))
 }
 
 fn checked(job: &Job<'_>, observed: &Observed) -> Vec<Figure> {
@@ -89,9 +90,9 @@ fn figures_of_an_adjustment_without_noise_are_the_truth() {
         // 96 image coordinates and 36 of control less 3 + 4 * 6 + 36 unknowns.
         assert_eq!(network("redundancy"), 69.0);
         assert!(figure(&found.figures, Group::Frame, "rms").value < 1e-5);
-        assert_eq!(found.figures.iter().filter(|figure| figure.group == Group::Point).count(), 96);
+        assert_eq!(found.figures.iter().filter(|figure| figure.name.group() == Group::Point).count(), 96);
         let less = adjusted(job, &observed, EXACT, &["c"], &starts, Wanted::Interior).unwrap();
-        assert!(less.figures.iter().all(|figure| matches!(figure.group, Group::Iop | Group::Network)));
+        assert!(less.figures.iter().all(|figure| matches!(figure.name.group(), Group::Iop | Group::Network)));
     });
 }
 
@@ -103,13 +104,13 @@ fn a_blunder_shows_in_its_own_residual_along_its_own_axis() {
         moved.at.y += 5.0;
         let starts = resections(job, &observe(job, points, KEY), EXACT).unwrap();
         let found = adjusted(job, &observed, EXACT, &["c", "x0", "y0"], &starts, Wanted::Points).unwrap();
-        let points: Vec<&Figure> = found.figures.iter().filter(|figure| figure.group == Group::Point).collect();
+        let points: Vec<&Figure> = found.figures.iter().filter(|figure| figure.name.group() == Group::Point).collect();
         let worst = points.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())).unwrap();
-        assert_eq!((&*worst.name, worst.unit), (format!("left/{}/y", job.field.targets[6].id).as_str(), "px"));
+        assert_eq!((worst.name.text(), worst.unit), (format!("left/{}/y", job.field.targets[6].id).as_str(), "px"));
         // Adjusted less observed: against the blunder, and most of it.
         assert!((-5.0..-2.5).contains(&worst.value), "{}", worst.value);
         // An image's figure is the root mean square over its coordinates.
-        let own = points.iter().filter(|figure| figure.name.starts_with("left/")).map(|figure| figure.value.powi(2));
+        let own = points.iter().filter(|figure| figure.name.text().starts_with("left/")).map(|figure| figure.value.powi(2));
         let rms = (own.sum::<f64>() / 24.0).sqrt();
         assert!((figure(&found.figures, Group::Residual, "left").value / rms - 1.0).abs() < 1e-12);
     });

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use calibench_model::Pose;
-use calibench_records::results::{Group, Outcome};
+use calibench_records::figures::Group;
+use calibench_records::results::Outcome;
 use nalgebra::{DMatrix, DVector, Matrix3, Point3, Vector3};
 
 use super::blocks::{BEND, HEAD, SETS, stand};
@@ -172,10 +173,10 @@ fn a_dense_solver_with_differences_agrees_to_a_millionth() {
     assert_eq!((block.poses.len(), block.points.len(), block.sights.len()), (16, 25, 400));
     let (sums, sigma0, cofactors) = block.adjust([0, 4, 20]);
     let figures = trial.calibrations[0].outcome.as_ref().unwrap();
-    let ours = figures.iter().find(|figure| figure.group == Group::Network && &*figure.name == "sigma0").unwrap().value;
+    let ours = figures.iter().find(|figure| figure.name.group() == Group::Network && figure.name.text() == "sigma0").unwrap().value;
     assert!((ours / sigma0 - 1.0).abs() < 1e-6, "{ours} {sigma0} {sums:?}");
     let first = 6 * block.poses.len() + 3 * block.points.len();
-    let parameters: Vec<_> = figures.iter().filter(|figure| figure.group == Group::Iop).collect();
+    let parameters: Vec<_> = figures.iter().filter(|figure| figure.name.group() == Group::Iop).collect();
     assert_eq!(parameters.len(), 48);
     for (i, (figure, value)) in parameters.iter().zip(block.sets.iter().flatten()).enumerate() {
         let sigma = sigma0 * cofactors[(first + i, first + i)].sqrt();

@@ -1,6 +1,7 @@
 //! Views of one trial, which are drawn and measured side by side: what becomes of each, on any number of threads.
 
-use calibench_records::results::{Group, Outcome, PointResult, Trial};
+use calibench_records::figures::Group;
+use calibench_records::results::{Outcome, PointResult, Trial};
 use calibench_scenario::Scenario;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -49,8 +50,9 @@ fn points_stand_in_the_order_of_methods_and_views_and_every_view_is_counted_once
         let expected: Vec<_> = [0, 1].iter().flat_map(|method| VIEWS.map(|view| (*method, view))).collect();
         assert_eq!(stand, expected, "{threads} threads");
         let figures = || trial.calibrations.iter().flat_map(|one| one.outcome.as_ref().unwrap());
-        let count =
-            |name: &str| figures().find(|figure| figure.group == Group::Network && &*figure.name == name).map(|figure| figure.value);
+        let count = |name: &str| {
+            figures().find(|figure| figure.name.group() == Group::Network && figure.name.text() == name).map(|figure| figure.value)
+        };
         for (name, views) in [("all", 4.0), ("tilted", 2.0)] {
             for what in ["images", "grids"] {
                 assert_eq!(count(&format!("modern/{what}/{name}")), Some(views), "{threads} threads: {what} of {name}");

@@ -1,6 +1,7 @@
 //! The error of check points split by its causes.
 
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::{FigureName, Quantity};
+use calibench_records::results::Figure;
 use calibench_scenario::transfer::{Decomposition, Switch};
 use nalgebra::Vector2;
 
@@ -75,19 +76,22 @@ impl Split {
 
     /// Root mean square errors, `unit`, and shares, numbers.
     pub fn figures(&self, unit: &'static str) -> Vec<Figure> {
-        let plain = |name: String, value: f64, unit: &'static str| Figure::plain(Group::Check, name, value, unit);
-        let rms = |name: String, errors: &Errors| plain(name, rms(errors), unit);
-        let mut figures =
-            vec![rms("none".into(), &self.none), rms("all".into(), &self.all), rms("interactions".into(), &self.interaction())];
+        let rms = |name: FigureName, errors: &Errors| Figure::plain(name, rms(errors), unit);
+        let whole = |quantity: Quantity, errors: &Errors| rms(quantity.into(), errors);
+        let mut figures = vec![
+            whole(Quantity::NoCause, &self.none),
+            whole(Quantity::AllCauses, &self.all),
+            whole(Quantity::Interactions, &self.interaction()),
+        ];
         for (i, switch) in self.switches.iter().enumerate() {
-            figures.push(rms(format!("alone/{}", switch.name()), &self.alone[i]));
-            figures.push(rms(format!("without/{}", switch.name()), &self.without[i]));
+            figures.push(rms(Quantity::Alone.of(&[switch.name()]), &self.alone[i]));
+            figures.push(rms(Quantity::Without.of(&[switch.name()]), &self.without[i]));
         }
-        let rest = ["none", "interactions"].map(str::to_owned);
-        let names = self.switches.iter().map(|switch| switch.name().to_owned()).chain(rest);
-        figures.extend(names.zip(self.shares()).map(|(name, share)| plain(format!("share/{name}"), share, "")));
+        let rest = [Quantity::NoCause, Quantity::Interactions].map(|quantity| quantity.entry().pattern);
+        let names = self.switches.iter().map(|switch| switch.name()).chain(rest);
+        figures.extend(names.zip(self.shares()).map(|(name, share)| Figure::plain(Quantity::Share.of(&[name]), share, "")));
         let pairs = self.switches.iter().enumerate().flat_map(|(i, a)| self.switches[i + 1..].iter().map(move |b| (a, b)));
-        let named = pairs.map(|(a, b)| format!("pair/{}+{}", a.name(), b.name()));
+        let named = pairs.map(|(a, b)| Quantity::PairOfCauses.of(&[a.name(), b.name()]));
         figures.extend(named.zip(self.pair_interactions()).map(|(name, errors)| rms(name, &errors)));
         figures
     }

@@ -2,7 +2,8 @@
 
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
-use calibench_records::results::{Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::Figure;
 
 use super::Campaign;
 use super::calibrated::Calibration;
@@ -31,18 +32,18 @@ pub fn of_camera(campaign: &Campaign<'_>, calibration: &Calibration, applied: &C
     let sigma = calibration.quality.and_then(|quality| quality.sigma_c);
     let of = |(i, name): (usize, &str)| {
         let sigma = sigma.filter(|_| i == 0);
-        Figure { group: Group::Iop, name: name.into(), value: found[i], sigma, error: Some(found[i] - truth[i]), unit: "mm" }
+        Figure { name: Quantity::Parameter.of(&[name]), value: found[i], sigma, error: Some(found[i] - truth[i]), unit: "mm" }
     };
     let mut figures: Vec<Figure> = ["c", "x0", "y0"].into_iter().enumerate().map(of).collect();
     if let Camera::Photogrammetric(camera) = applied {
         let rest = camera.parameters().into_iter().skip(3);
-        figures.extend(rest.map(|parameter| Figure::plain(Group::Iop, parameter.name, parameter.value, parameter.unit)));
+        figures.extend(rest.map(|parameter| Figure::plain(Quantity::Parameter.of(&[parameter.name]), parameter.value, parameter.unit)));
     }
     if let Some(quality) = calibration.quality {
-        figures.push(Figure::plain(Group::Network, "sigma0", quality.sigma0, ""));
-        figures.push(Figure::plain(Group::Network, "redundancy", quality.redundancy as f64, ""));
+        figures.push(Figure::plain(Quantity::Sigma0, quality.sigma0, ""));
+        figures.push(Figure::plain(Quantity::Redundancy, quality.redundancy as f64, ""));
         if campaign.transfer.measured_by.is_some() {
-            figures.push(Figure::plain(Group::Network, "missed", calibration.missed as f64, ""));
+            figures.push(Figure::plain(Quantity::Missed, calibration.missed as f64, ""));
         }
     }
     Ok(figures)
@@ -52,21 +53,27 @@ pub fn of_camera(campaign: &Campaign<'_>, calibration: &Calibration, applied: &C
 pub fn of_points(checked: &[Checked], unit: &'static str) -> Vec<Figure> {
     let Rmse { axes: [x, y, z], planimetric, spatial } = Rmse::of(checked.iter().map(|point| point.error));
     let to_survey = Rmse::of(checked.iter().map(|point| point.to_survey)).planimetric;
-    let named =
-        [("rmse_x", x), ("rmse_y", y), ("rmse_z", z), ("rmse_xy", planimetric), ("rmse_xyz", spatial), ("rmse_xy_survey", to_survey)];
-    let points = Figure::plain(Group::Check, "points", checked.len() as f64, "");
-    named.into_iter().map(|(name, value)| Figure::plain(Group::Check, name, value, unit)).chain([points]).collect()
+    let named = [
+        (Quantity::RmseX, x),
+        (Quantity::RmseY, y),
+        (Quantity::RmseZ, z),
+        (Quantity::RmseXy, planimetric),
+        (Quantity::RmseXyz, spatial),
+        (Quantity::RmseXySurvey, to_survey),
+    ];
+    let points = Figure::plain(Quantity::CheckPoints, checked.len() as f64, "");
+    named.into_iter().map(|(quantity, value)| Figure::plain(quantity, value, unit)).chain([points]).collect()
 }
 
 /// The coordinates of every check point with their errors.
 pub fn every_point(campaign: &Campaign<'_>, checked: &[Checked], unit: &'static str) -> Vec<Figure> {
     let of = |point: &Checked| {
         let name = &campaign.subject.field.targets[point.target].id;
-        let axis = |(i, axis): (usize, &str)| {
+        let axis = |(i, axis): (usize, Quantity)| {
             let error = Some(point.error[i]);
-            Figure { group: Group::Object, name: format!("{name}/{axis}").into(), value: point.at[i], sigma: None, error, unit }
+            Figure { name: axis.of(&[name]), value: point.at[i], sigma: None, error, unit }
         };
-        ["X", "Y", "Z"].into_iter().enumerate().map(axis).collect::<Vec<_>>()
+        [Quantity::ObjectX, Quantity::ObjectY, Quantity::ObjectZ].into_iter().enumerate().map(axis).collect::<Vec<_>>()
     };
     checked.iter().flat_map(of).collect()
 }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use calibench_measure::registry::Build;
 use calibench_measure::{Registry, opencv_subpix};
-use calibench_records::results::{Calibrated, Figure, Group, Trial};
+use calibench_records::figures::Group;
+use calibench_records::results::{Calibrated, Figure, Trial};
 use calibench_scenario::transfer::{Conditions, Decomposition, Switch};
 use calibench_scenario::{Scenario, parse};
 use nalgebra::Vector2;
@@ -107,7 +108,7 @@ fn figures(found: &[Calibrated], method: usize, set: usize) -> &[Figure] {
 
 fn figure<'a>(found: &'a [Calibrated], (method, set): (usize, usize), group: Group, name: &str) -> &'a Figure {
     let all = figures(found, method, set);
-    all.iter().find(|figure| figure.group == group && &*figure.name == name).unwrap_or_else(|| panic!("no {name}: {all:?}"))
+    all.iter().find(|figure| figure.name.group() == group && figure.name.text() == name).unwrap_or_else(|| panic!("no {name}: {all:?}"))
 }
 
 fn value(found: &[Calibrated], of: (usize, usize), name: &str) -> f64 {
@@ -138,7 +139,7 @@ fn without_errors_exact_cameras_find_every_check_point() {
     }
     assert!(value(&found, (NOTHING, 0), "rmse_xy") > 0.1, "no calibration costs decimetres under poses of another");
     assert!(value(&found, (NOTHING, 1), "rmse_xy") < 0.1, "most of which is the poses'");
-    assert_eq!(figures(&found, CONTROL, 0).iter().filter(|figure| figure.group == Group::Object).count(), 3 * 14);
+    assert_eq!(figures(&found, CONTROL, 0).iter().filter(|figure| figure.name.group() == Group::Object).count(), 3 * 14);
 }
 
 #[test]
@@ -210,7 +211,7 @@ fn the_seed_makes_the_numbers_on_any_number_of_threads() {
     assert_ne!(one, on(1, 6));
     let values = |trial: &Trial| value(&trial.calibrations, (CONTROL, 0), "rmse_xy");
     assert_ne!(values(&one[0]), values(&one[1]));
-    let kept = |trial: &Trial| figures(&trial.calibrations, CONTROL, 0).iter().any(|figure| figure.group == Group::Object);
+    let kept = |trial: &Trial| figures(&trial.calibrations, CONTROL, 0).iter().any(|figure| figure.name.group() == Group::Object);
     assert!(kept(&one[0]) && !kept(&one[1]), "of later trials the check points are not kept");
 }
 
@@ -241,7 +242,7 @@ fn a_split_of_a_trial_sums_up() {
     assert!(value(&found, of, "alone/pitch") > 0.1 && value(&found, of, "alone/refocus") > 0.05);
     assert!(value(&found, of, "pair/pitch+refocus") < 0.1 * value(&found, of, "alone/refocus"));
     assert_eq!(figure(&found, of, Group::Network, "runs").value, f64::from(2 + 5 + 5 + 10));
-    assert!(figures(&found, BOARD, 1).iter().all(|figure| !figure.name.contains("exchanged")), "held throughout: no such switch");
+    assert!(figures(&found, BOARD, 1).iter().all(|figure| !figure.name.text().contains("exchanged")), "held throughout: no such switch");
 }
 
 fn plan() -> Decomposition {
@@ -255,7 +256,7 @@ fn errors(x: f64, y: f64) -> Errors {
 }
 
 fn named(split: &Split, name: &str) -> f64 {
-    split.figures("m").iter().find(|figure| &*figure.name == name).unwrap_or_else(|| panic!("no {name}")).value
+    split.figures("m").iter().find(|figure| figure.name.text() == name).unwrap_or_else(|| panic!("no {name}")).value
 }
 
 /// 3 to the right and 4 upwards: they sum up, and to squares of 9 and 16 of 25.

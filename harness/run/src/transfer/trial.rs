@@ -2,7 +2,8 @@
 
 use calibench_model::camera::Camera;
 use calibench_random::Key;
-use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_records::figures::Quantity;
+use calibench_records::results::{Calibrated, Figure};
 use calibench_scenario::transfer::{Calibrates, Case, Conditions, Decomposition};
 
 use super::Campaign;
@@ -49,7 +50,7 @@ impl Bench<'_> {
         let outcome = self.applied(method, &case.conditions).and_then(|(calibration, camera)| {
             let mut found = figures::of_camera(self.campaign, &calibration, &camera)?;
             match self.over_frame(&camera) {
-                Ok(rms) => found.push(Figure::plain(Group::Frame, "rms", rms, "px")),
+                Ok(rms) => found.push(Figure::plain(Quantity::OverFrame, rms, "px")),
                 Err(why) => failed.push(format!("over the frame: {why}")),
             }
             match self.checked(&camera, &case.conditions) {
@@ -72,7 +73,7 @@ impl Bench<'_> {
             let (_, camera) = self.applied(method, conditions)?;
             Ok(self.checked(&camera, conditions)?.iter().map(|point| point.error.xy()).collect())
         })?;
-        let runs = Figure::plain(Group::Network, "runs", split.runs() as f64, "");
+        let runs = Figure::plain(Quantity::Runs, split.runs() as f64, "");
         Ok(split.figures(self.campaign.subject.unit.name()).into_iter().chain([runs]).collect())
     }
 

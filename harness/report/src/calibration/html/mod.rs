@@ -48,7 +48,7 @@ pub(super) fn page(
     (photos, before): (&[Pictured<'_>], &[String]),
 ) -> String {
     let mut page = Page::new("Calibration");
-    let doubts: Vec<String> = before.iter().cloned().chain(calibration.doubts().into_iter().map(str::to_owned)).collect();
+    let doubts: Vec<String> = before.iter().cloned().chain(calibration.doubts().into_iter().map(|doubt| doubt.words)).collect();
     let (level, sentence) = verdict(calibration, doubts.len());
     page.verdict(level, &sentence, reasons(calibration, doubts));
     let names = calibration.prepared.survey.images.iter();

@@ -1,7 +1,7 @@
 //! Residuals of the first trial by image point, and of all trials by the convergence of the image.
 
 use calibench_records::description::Views;
-use calibench_records::results::Group;
+use calibench_records::figures::Quantity;
 use nalgebra::Vector3;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -76,7 +76,7 @@ pub fn by_convergence(found: &Summaries, views: &Views) -> Option<Canvas> {
     let angles: Vec<f64> =
         views.stations.iter().map(|station| (-Vector3::from(station.sight).dot(&normal)).clamp(-1.0, 1.0).acos().to_degrees()).collect();
     let widest = angles.iter().copied().fold(10.0, f64::max);
-    let figure = |method: &str, name: &str| found.get(method, Group::Residual, name).map(|s| s.value);
+    let figure = |method: &str, name: &str| found.get(method, Quantity::ImageResidual.of(&[name])).map(|s| s.value);
     let highest = found
         .methods
         .iter()
