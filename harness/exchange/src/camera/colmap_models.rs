@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 use calibench_model::{CornerPoint, PixelPoint};
 
 use super::brown::{Brown, positive};
-use super::fit::Model;
+use super::format::Model;
 use super::number::shortened;
 use super::{CameraFileError, CameraFormat};
 

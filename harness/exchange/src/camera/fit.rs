@@ -5,54 +5,8 @@ use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Target,
 use thiserror::Error;
 
 use super::behind::{Behind, behind};
-use super::format::CameraFormat;
+use super::format::{CameraFormat, Keeps, KeptCovariance, KeptPose, Model};
 use super::{NamedCamera, ParameterCovariance, PoseFrame};
-
-/// A model that a format holds.
-#[derive(Clone, Copy, Debug)]
-pub struct Model {
-    /// Its name in the tool.
-    pub name: &'static str,
-    /// Its model here.
-    pub target: Target,
-}
-
-/// What a format has a place for besides the camera.
-#[derive(Clone, Copy, Debug)]
-pub struct Keeps {
-    /// mrcal's splines as they are.
-    pub splines: bool,
-    /// A name.
-    pub name: bool,
-    /// The pixel pitch.
-    pub pitch: bool,
-    /// A pose.
-    pub pose: KeptPose,
-    /// The covariance of the parameters.
-    pub covariance: KeptCovariance,
-}
-
-/// What of a pose a format keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeptPose {
-    /// Nothing.
-    None,
-    /// That in a rig.
-    InRig,
-    /// That in a world.
-    InWorld,
-}
-
-/// How much of a covariance a format keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeptCovariance {
-    /// Nothing.
-    None,
-    /// Standard deviations without correlations.
-    Variances,
-    /// All of it.
-    Whole,
-}
 
 /// Why a format does not hold a camera.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -81,13 +35,6 @@ pub enum FitError {
         /// The reason of the best model.
         why: ConvertError,
     },
-}
-
-impl CameraFormat {
-    /// The models that it holds, the leanest first, for a pixel pitch in um if one is known.
-    pub fn models(&self, pitch_um: Option<f64>) -> Vec<Model> {
-        (self.models)(pitch_um)
-    }
 }
 
 /// `camera` in one of the models of `format`, and which: exact in the first that holds it, or fitted in the one whose residuals are smallest. With `model`

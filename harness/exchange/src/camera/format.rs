@@ -1,11 +1,57 @@
 //! What is to be known of a format of camera files.
 
 use calibench_model::camera::Convention;
+use calibench_model::convert::Target;
 
-use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
 use super::numbering::Numbering;
 use super::source::Source;
 use super::{CameraFileError, NamedCamera, ReadOptions};
+
+/// A model that a format holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Model {
+    /// Its name in the tool.
+    pub name: &'static str,
+    /// Its model here.
+    pub target: Target,
+}
+
+/// What a format has a place for besides the camera.
+#[derive(Clone, Copy, Debug)]
+pub struct Keeps {
+    /// mrcal's splines as they are.
+    pub splines: bool,
+    /// A name.
+    pub name: bool,
+    /// The pixel pitch.
+    pub pitch: bool,
+    /// A pose.
+    pub pose: KeptPose,
+    /// The covariance of the parameters.
+    pub covariance: KeptCovariance,
+}
+
+/// What of a pose a format keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPose {
+    /// Nothing.
+    None,
+    /// That in a rig.
+    InRig,
+    /// That in a world.
+    InWorld,
+}
+
+/// How much of a covariance a format keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptCovariance {
+    /// Nothing.
+    None,
+    /// Standard deviations without correlations.
+    Variances,
+    /// All of it.
+    Whole,
+}
 
 /// Cameras to text.
 type Writer = fn(&[NamedCamera]) -> Result<String, CameraFileError>;
@@ -88,6 +134,11 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
 };
 
 impl CameraFormat {
+    /// The models that it holds, the leanest first, for a pixel pitch in um if one is known.
+    pub fn models(&self, pitch_um: Option<f64>) -> Vec<Model> {
+        (self.models)(pitch_um)
+    }
+
     /// Whether it can be written.
     pub fn is_written(&self) -> bool {
         self.write.is_some() || self.binary.is_some()

@@ -48,7 +48,7 @@ use crate::atomic::write_atomically;
 
 pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
-pub use format::CameraFormat;
+pub use format::{CameraFormat, Keeps, KeptCovariance, KeptPose, Model};
 pub use formats::{FORMATS, format_named};
 pub use kalibr_target::{kalibr_target, read_kalibr_target};
 pub(crate) use lists::read_beside;

@@ -4,7 +4,7 @@ use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, Eucm, ImageSi
 use calibench_model::convert::Target;
 
 use super::brown::{Brown, middle, positive};
-use super::fit::Model;
+use super::format::Model;
 use super::{CameraFileError, CameraFormat, Lens};
 
 /// Focal length of a film 36 mm wide, mm, principal point and skew, in units of the longer side.

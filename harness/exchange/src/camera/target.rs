@@ -6,7 +6,7 @@ use calibench_model::camera::{AgisoftVersion, CameraModel, FisheyeProjection, Ta
 use calibench_model::convert::Target;
 use thiserror::Error;
 
-use super::fit::Model;
+use super::format::Model;
 use super::{CameraFormat, FORMATS, NamedCamera, format_named};
 
 /// The names of conventions, besides those of formats with models of their own, with what they mean.

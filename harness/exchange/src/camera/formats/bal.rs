@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use super::bundler::{Stream, camera, parts};
-use crate::camera::fit::{Keeps, KeptPose, Model};
+use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::number::shortest;
 use crate::camera::pose::{of_rotation_vector, rotation_vector};
 use crate::camera::source::Source;

@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
-use crate::camera::fit::{Keeps, KeptPose, Model};
+use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::pose::{of_quaternion, quaternion};
 use crate::camera::source::Source;

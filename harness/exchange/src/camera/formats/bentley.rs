@@ -7,7 +7,7 @@ use roxmltree::Node;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, middle, positive};
-use crate::camera::fit::{Keeps, Model};
+use crate::camera::format::{Keeps, Model};
 use crate::camera::number::{finite, pixels, shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, xml};

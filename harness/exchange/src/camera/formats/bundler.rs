@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, middle};
-use crate::camera::fit::{Keeps, KeptPose, Model};
+use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::number::{finite, numbers, shortest};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, noted};

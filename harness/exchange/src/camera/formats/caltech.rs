@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
-use crate::camera::fit::{Keeps, KeptCovariance, Model};
+use crate::camera::format::{Keeps, KeptCovariance, Model};
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};

@@ -6,7 +6,7 @@ use calibench_model::convert::Target;
 use super::PLAIN;
 use super::opencv_yaml::{quoted, tree};
 use crate::camera::brown::{Brown, positive};
-use crate::camera::fit::{Keeps, Model};
+use crate::camera::format::{Keeps, Model};
 use crate::camera::number::{shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;

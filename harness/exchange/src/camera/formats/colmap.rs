@@ -3,8 +3,7 @@
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
-use crate::camera::fit::Keeps;
-use crate::camera::format::Parts;
+use crate::camera::format::{Keeps, Parts};
 use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::numbering::Numbering;

@@ -3,8 +3,7 @@
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
-use crate::camera::fit::Keeps;
-use crate::camera::format::{Binary, Parts};
+use crate::camera::format::{Binary, Keeps, Parts};
 use crate::camera::ids::Ids;
 use crate::camera::little_endian::{Bytes, Stream};
 use crate::camera::number::pixels;

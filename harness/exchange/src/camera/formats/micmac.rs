@@ -6,7 +6,7 @@ use roxmltree::Node;
 
 use super::PLAIN;
 use crate::camera::brown::positive;
-use crate::camera::fit::{Keeps, Model};
+use crate::camera::format::{Keeps, Model};
 use crate::camera::number::{finite, numbers, scientific, shortened};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, xml};

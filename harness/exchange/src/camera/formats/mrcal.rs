@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::positive;
-use crate::camera::fit::{Keeps, KeptPose, Model};
+use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::number::{row, shortened};
 use crate::camera::pose::{of_rotation_vector, rotation_vector};
 use crate::camera::source::Source;

@@ -6,7 +6,7 @@ use calibench_model::{CornerPoint, PixelPoint};
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
-use crate::camera::fit::{Keeps, KeptPose, Model};
+use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::json::{self, quoted};
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::pose::rigid;

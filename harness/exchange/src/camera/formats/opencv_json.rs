@@ -1,7 +1,7 @@
 //! OpenCV's FileStorage in JSON.
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::json::{json, quoted};
 use crate::camera::number::row;
 use crate::camera::source::Source;

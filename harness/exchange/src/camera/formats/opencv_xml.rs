@@ -3,7 +3,7 @@
 use roxmltree::Node;
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::scientific;
 use crate::camera::source::Source;
 use crate::camera::tree::{self, Entry, Value};

@@ -7,7 +7,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
-use crate::camera::fit::{Keeps, Model};
+use crate::camera::format::{Keeps, Model};
 use crate::camera::ids::Ids;
 use crate::camera::json;
 use crate::camera::number::{row, shortened, shortest};

@@ -6,7 +6,7 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, middle, positive};
-use crate::camera::fit::{Keeps, Model};
+use crate::camera::format::{Keeps, Model};
 use crate::camera::json::{self, quoted};
 use crate::camera::number::{shortened, shortest};
 use crate::camera::source::Source;

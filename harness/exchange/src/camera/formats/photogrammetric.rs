@@ -3,7 +3,7 @@
 use calibench_model::camera::{Camera, CameraModel};
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::photogrammetric_toml::{CovarianceRows, Head, Wire};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};

@@ -4,7 +4,7 @@ use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, Imag
 use roxmltree::Node;
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::ids::Ids;
 use crate::camera::number::{numbers, scientific};
 use crate::camera::source::Source;

@@ -5,7 +5,7 @@
 use calibench_model::camera::{Camera, Pix4d, TangentialOrder};
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{finite, fixed, shortened};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};

@@ -8,7 +8,7 @@ use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
 use super::PLAIN;
 use super::pix4d_cam::{camera, sensor, width_of_sensor};
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{finite, fixed, pixels, shortened};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};

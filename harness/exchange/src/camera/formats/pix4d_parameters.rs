@@ -4,7 +4,7 @@ use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
 use super::PLAIN;
 use super::pix4d_cam::camera;
-use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{fixed, numbers, pixels};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};

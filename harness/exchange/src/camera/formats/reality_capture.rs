@@ -4,7 +4,7 @@ use calibench_model::camera::tool_conventions;
 use roxmltree::Node;
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptPose};
+use crate::camera::format::{Keeps, KeptPose};
 use crate::camera::number::{finite, numbers, shortened, shortest};
 use crate::camera::reality_scan::{self, Coefficients, DIVISION, Lengths};
 use crate::camera::source::Source;

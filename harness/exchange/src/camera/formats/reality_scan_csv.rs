@@ -6,7 +6,7 @@ use calibench_model::camera::{ImageSize, tool_conventions};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
 
 use super::PLAIN;
-use crate::camera::fit::{Keeps, KeptPose};
+use crate::camera::format::{Keeps, KeptPose};
 use crate::camera::number::{finite, shortened, shortest};
 use crate::camera::reality_scan::{self, DIVISION, Lengths};
 use crate::camera::source::Source;

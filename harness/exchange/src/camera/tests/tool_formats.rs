@@ -6,7 +6,7 @@ use calibench_model::camera::{
 };
 use proptest::prelude::*;
 
-use super::super::fit::KeptPose;
+use super::super::format::KeptPose;
 use super::super::pose::of_rotation_vector;
 use super::super::{NamedCamera, ParameterCovariance, Pose, PoseFrame, ReadOptions, camera_text, format_named};
 use super::read_with;
