@@ -9,7 +9,8 @@ use toml::Spanned;
 
 use crate::declaration::{self, Declaration};
 use crate::error::PluginError;
-use crate::program::{Launcher, method};
+use crate::method::method;
+use crate::program::Launcher;
 use crate::recorded::{self, Recording, RecordingWire};
 
 #[derive(Deserialize)]
