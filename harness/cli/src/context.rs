@@ -16,8 +16,8 @@ use calibench_scenario::catalogue::Catalogue;
 
 pub use calibench_project::{Pictured, origin};
 
+use crate::confined::CONFINED;
 use crate::failure::{Failure, project_failure};
-use crate::plugin::CONFINED;
 
 /// What every command gets.
 pub struct Context<'a> {
