@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use calibench_exchange::Inputs;
-use calibench_measure::kinds::all_busy;
+use calibench_measure::coverage::all_busy;
 use calibench_measure::{Configured, Operator, Sought};
 use calibench_model::{Image, Start};
 use calibench_report::speeds::{SPEEDS, Speed, Speeds};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use calibench_calibrate::Offset;
 use calibench_exchange::{Inputs, MeasuredRow, Outcome, Points, write_measured};
 use calibench_measure::Configured;
-use calibench_measure::kinds::{all_busy, unmeasured};
+use calibench_measure::coverage::{all_busy, unmeasured};
 use calibench_model::TargetKind;
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use calibench_report::json::{MeasurementAnswer, MeasurementCounts};
