@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use calibench_exchange::Inputs;
+use calibench_files::Inputs;
 use calibench_measure::{Configured, Registry};
 use calibench_model::TargetKind;
 use calibench_model::boards::Board;

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, write_control};
+use calibench_exchange::write_control;
+use calibench_files::Inputs;
 use calibench_model::boards::Board;
 use calibench_photographs::board_of;
 use clap::Args;

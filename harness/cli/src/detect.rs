@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, PointRef, PointRow, write_points};
+use calibench_exchange::camera::inputs_of;
+use calibench_exchange::{PointRef, PointRow, write_points};
 use calibench_measure::Board as Counts;
 use calibench_model::boards::Board;
 use calibench_photographs::coded::{Coded, recognise_coded};
@@ -65,7 +66,7 @@ impl Detect {
     }
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
-        let output = output::table("-o", self.output.as_deref(), &Inputs::new(&self.photos))?;
+        let output = output::table("-o", self.output.as_deref(), &inputs_of(&self.photos))?;
         let finder = finder(board)?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
@@ -90,7 +91,7 @@ impl Detect {
     fn field(&self, context: &Context<'_>, name: &str) -> Result<(), Failure> {
         let scenario = context.scenario(name)?;
         let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
-        let read = Inputs::new(self.photos.iter().cloned().chain(file));
+        let read = inputs_of(self.photos.iter().cloned().chain(file));
         let output = output::table("-o", self.output.as_deref(), &read)?;
         let subject = views(&scenario)?;
         let classifier = match self.classifier {

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use calibench_calibrate::Survey;
 use calibench_calibrate::orientation::{ObjectPoints, poses_of};
-use calibench_exchange::{Inputs, read_stations};
+use calibench_exchange::camera::inputs_of;
+use calibench_exchange::read_stations;
 use calibench_report::plain;
 use clap::Args;
 
@@ -41,7 +42,7 @@ pub struct Intersect {
 
 impl Intersect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.points, &self.stations].into_iter().chain(self.cameras.paths()));
+        let inputs = inputs_of([&self.points, &self.stations].into_iter().chain(self.cameras.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let survey = Survey::without_control(read_measured(&self.points)?);
         let cameras = self.cameras.of(&survey.images)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use calibench_exchange::camera::FORMATS;
 use calibench_exchange::st_map::MapFile;
-use calibench_exchange::{Inputs, OutputFile, OutputFolder};
+use calibench_files::{Inputs, OutputFile, OutputFolder};
 
 use crate::failure::Failure;
 

@@ -29,10 +29,9 @@ impl PluginCommand {
 }
 
 fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
-    let text = calibench_exchange::bounded::text(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    let text = calibench_files::bounded::text(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
     let declared = parse(&file.display().to_string(), &text).map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
-    let folder =
-        file.canonicalize().map_err(|error| calibench_exchange::at(file, &error))?.parent().map(Path::to_owned).unwrap_or_default();
+    let folder = file.canonicalize().map_err(|error| calibench_files::at(file, &error))?.parent().map(Path::to_owned).unwrap_or_default();
     let launcher = context.launcher()?;
     let mut failed = false;
     for declared in declared {

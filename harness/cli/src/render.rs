@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Fingerprint, NewFolder, Points, RENDERED, RenderedImage, encode_png, write_rendered};
+use calibench_exchange::{Fingerprint, Points, RENDERED, RenderedImage, encode_png, write_rendered};
+use calibench_files::NewFolder;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Start};
 use calibench_random::Key;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::Inputs;
 use calibench_exchange::camera::NamedCamera;
+use calibench_exchange::camera::inputs_of;
 use calibench_exchange::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
 use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
@@ -44,7 +44,7 @@ pub struct StMapCommand {
 
 impl StMapCommand {
     pub fn run(&self) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.file].into_iter().chain(&self.check));
+        let inputs = inputs_of([&self.file].into_iter().chain(&self.check));
         let output = self.output.as_deref().map(|path| output::map("-o", path, &inputs)).transpose()?;
         let kind = output.as_ref().map(|output| {
             // What is no regular file has any ending.

@@ -7,8 +7,8 @@ use std::path::Path;
 use calibench_model::escape;
 use csv::StringRecord;
 
-use crate::bounded;
 use crate::points::{Names, PointFileError, as_a_whole, csv_error, line_of};
+use calibench_files::bounded;
 
 /// The columns of a kind of sheet.
 pub(crate) struct Form {

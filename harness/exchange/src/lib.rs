@@ -1,30 +1,20 @@
 //! Files of other tools: cameras, image coordinates, control, stations and photographs; testfields for the printer.
 
-pub mod atomic;
-pub mod bounded;
 pub mod camera;
 pub mod control;
 mod csv_named_rows;
 pub mod fingerprint;
-pub mod folder;
-pub mod inputs;
 pub mod photo;
-pub mod photograph;
-mod pipelined;
 pub mod points;
 pub mod points_write;
 pub mod print;
 pub mod rendered;
 pub mod st_map;
 pub mod stations;
-pub mod table;
 
-pub use atomic::{OutputFile, at};
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use fingerprint::Fingerprint;
-pub use folder::{FilledFolder, NewFile, NewFolder, OutputFolder};
-pub use inputs::Inputs;
 pub use photo::{
     DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,
     read_photo, read_photo_as, read_with_levels, size_of, write_png,
@@ -33,7 +23,6 @@ pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, Po
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};
 pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
-pub use table::{Row, write_rows, write_table};
 
 /// The example of the README.
 #[cfg(doctest)]

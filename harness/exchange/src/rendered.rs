@@ -6,10 +6,10 @@ use std::path::Path;
 use calibench_model::escape;
 use csv::StringRecord;
 
-use crate::bounded;
 use crate::fingerprint::Fingerprint;
 use crate::points::{Names, PointFileError, csv_error, line_of};
-use crate::table::write_table;
+use calibench_files::bounded;
+use calibench_files::table::write_table;
 
 /// The name of the list in the folder.
 pub const RENDERED: &str = "rendered.csv";

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use calibench_model::Pose;
 
-use crate::bounded;
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
+use calibench_files::bounded;
 
 /// The columns of a pose in a station file: X0, Y0, Z0 in object units, omega, phi, kappa in degrees.
 pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"];

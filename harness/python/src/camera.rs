@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use calibench_exchange::ReadOptions;
 use calibench_exchange::camera::conversion::{Converted, converted};
 use calibench_exchange::camera::fit::losses;
 use calibench_exchange::camera::for_file::for_file;
@@ -9,7 +10,7 @@ use calibench_exchange::camera::open_points::OpenPoints;
 use calibench_exchange::camera::target::{Given, goal};
 use calibench_exchange::camera::{CameraFormat, NamedCamera, format_named, read_camera_with, write_camera};
 use calibench_exchange::st_map::{Overscan, Undistorted};
-use calibench_exchange::{OutputFile, ReadOptions};
+use calibench_files::OutputFile;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize, Ray, Verification, fold};
 use calibench_model::convert::{ConvertOptions, Method, Region, Verdict};

@@ -3,7 +3,8 @@
 use std::io;
 
 use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
-use calibench_exchange::{ControlDisc, ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
+use calibench_exchange::{ControlDisc, ControlRow, POSE_COLUMNS, Points, station_numbers, write_points};
+use calibench_files::{NewFolder, write_table};
 use calibench_model::camera::{Camera, ImageSize};
 use calibench_model::{Affine, ObjectTarget, PixelPoint, Pose, Scene, TargetKind};
 use calibench_records::names::kept_image_name;

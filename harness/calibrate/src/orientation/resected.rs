@@ -3,7 +3,8 @@
 use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Resection, Search, Tolerance, resect};
-use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_table};
+use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers};
+use calibench_files::write_table;
 use calibench_model::camera::{Camera, CameraModel};
 use rayon::prelude::*;
 

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
-use calibench_exchange::{Inputs, Reading, read_control};
+use calibench_exchange::camera::inputs_of;
+use calibench_exchange::{Reading, read_control};
 use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, published_camera, stated_sigma, usual_models};
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
@@ -92,7 +93,7 @@ impl Judge {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
-        let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
+        let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("judge", None))).transpose()?;
         let (material, doubts, reading) = self.material(context)?;
         let size = material.size;

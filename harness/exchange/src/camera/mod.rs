@@ -44,15 +44,14 @@ use std::path::Path;
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use serde::{Deserialize, Serialize};
 
-use crate::atomic::write_atomically;
+use calibench_files::atomic::write_atomically;
 
 pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
 pub use format::{CameraFormat, Keeps, KeptCovariance, KeptPose, Model};
 pub use formats::{FORMATS, format_named};
 pub use kalibr_target::{kalibr_target, read_kalibr_target};
-pub(crate) use lists::read_beside;
-pub use lists::{CameraList, ListWriter, Pieces};
+pub use lists::{CameraList, ListWriter, Pieces, inputs_of};
 pub use pose::{Pose, PoseFrame};
 pub use source::LARGEST_FILE;
 use source::Source;

@@ -9,7 +9,7 @@ use png::chunk::IDAT;
 
 use super::begin;
 use super::filters::{ABOVE, AVERAGE, LEFT, Rows, filter, size};
-use crate::pipelined::pipelined;
+use calibench_files::pipelined::pipelined;
 
 /// Bytes of levels that a band has, about: with the grey values that they are made from it stays in a processor's own memory.
 const BAND: usize = 1 << 18;

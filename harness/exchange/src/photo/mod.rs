@@ -23,7 +23,7 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, Imag
 use thiserror::Error;
 use tiff::encoder::{TiffEncoder, colortype};
 
-use crate::atomic::write_atomically;
+use calibench_files::atomic::write_atomically;
 
 pub use bands::encode_png;
 pub use budget::MOST_BYTES;

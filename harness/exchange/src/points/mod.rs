@@ -12,7 +12,7 @@ use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind, escape}
 use csv::StringRecord;
 use thiserror::Error;
 
-use crate::bounded;
+use calibench_files::bounded;
 
 pub use lost::{LostRow, LostRows};
 pub use names::Names;

@@ -12,7 +12,7 @@ use std::io;
 use calibench_model::Testfield;
 use thiserror::Error;
 
-use crate::folder::NewFolder;
+use calibench_files::folder::NewFolder;
 
 pub use layout::{Paper, Sheet, sheets};
 pub use pdf::pdf;

@@ -13,7 +13,7 @@ use tiff::tags::Tag;
 
 use super::{Pixel, StMap, StMapError};
 use crate::photo::reader;
-use crate::photograph::{WRITER, marked};
+use calibench_files::photograph::{WRITER, marked};
 
 /// Memory of a map that is read, bytes.
 const MOST_BYTES: u64 = 4 << 30;

@@ -111,7 +111,7 @@ fn files_come_back_and_are_ours() {
         let bytes = encode(&map, kind).unwrap();
         assert_eq!(bytes, encode(&map, kind).unwrap(), "{name}");
         std::fs::write(&path, &bytes).unwrap();
-        assert!(!crate::photograph::is_photograph(&path).unwrap(), "{name}");
+        assert!(!calibench_files::photograph::is_photograph(&path).unwrap(), "{name}");
         let (size, places) = read(&path).unwrap();
         assert_eq!(size, map.size);
         let step = if kind.is_of_sixteen_bits() { 0.5 / 65535.0 + 1e-7 } else { 0.0 };

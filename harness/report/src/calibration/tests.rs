@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use calibench_calibrate::{Calibration, DatumChoice, Optics, Prepared, Settings, prepare};
-use calibench_exchange::{ControlRow, OutputFolder, PointRow};
+use calibench_exchange::{ControlRow, PointRow};
+use calibench_files::OutputFolder;
 use calibench_model::camera::ImageSize;
 use calibench_model::{PixelPoint, Start};
 

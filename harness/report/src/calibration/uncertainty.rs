@@ -4,7 +4,7 @@ use std::io;
 
 use calibench_adjust::{Distance, Held, Uncertainty, Variance};
 use calibench_calibrate::Calibration;
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 

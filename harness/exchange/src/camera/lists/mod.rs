@@ -14,6 +14,8 @@ use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
+use calibench_files::Inputs;
+
 use super::formats::{colmap, colmap_bin};
 use super::source::{self, LARGEST_FILE};
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_images, recognised};
@@ -212,8 +214,14 @@ impl Pieces<'_> {
     }
 }
 
+/// What a command reads: the files and folders of `paths`, and the lists of cameras that are read with COLMAP's lists of images.
+pub fn inputs_of<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Inputs {
+    let with_beside = |path: P| [Some(path.as_ref().to_owned()), read_beside(path.as_ref())];
+    Inputs::new(paths.into_iter().flat_map(with_beside).flatten())
+}
+
 /// The list of cameras that is read with the file at `path`, if that is one of COLMAP's lists of images.
-pub(crate) fn read_beside(path: &Path) -> Option<PathBuf> {
+fn read_beside(path: &Path) -> Option<PathBuf> {
     // A pipe is read once.
     std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
     let head = head(path).ok()?;

@@ -5,7 +5,7 @@ use calibench_model::testfield::{Area, Curve, Outline, PlatePoint};
 use calibench_model::{Plate, Testfield};
 
 use super::*;
-use crate::OutputFolder;
+use calibench_files::OutputFolder;
 
 mod paper;
 

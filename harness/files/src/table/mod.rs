@@ -30,7 +30,10 @@ where
 }
 
 /// Writes a row whose names no spreadsheet takes for formulas; the readers of points, control and stations undo that.
-pub(crate) fn write_row<W: Write>(writer: &mut csv::Writer<W>, cells: impl IntoIterator<Item: AsRef<str>>) -> csv::Result<()> {
+///
+/// # Errors
+/// What the output refuses.
+pub fn write_row<W: Write>(writer: &mut csv::Writer<W>, cells: impl IntoIterator<Item: AsRef<str>>) -> csv::Result<()> {
     cells.into_iter().try_for_each(|cell| writer.write_field(escape::cell(cell.as_ref()).as_bytes()))?;
     writer.write_record(None::<&[u8]>)
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 ///
 /// # Errors
 /// The first in the order of the pieces: of one that cannot be made, none of its batch is taken.
-pub(crate) fn pipelined<G: Send, P: Send, E: Send>(
+pub fn pipelined<G: Send, P: Send, E: Send>(
     given: impl IntoIterator<Item = G>,
     batch: usize,
     make: impl Fn(G) -> Result<P, E> + Sync,

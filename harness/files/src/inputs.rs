@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::camera::read_beside;
-
 /// The files and folders that a command reads.
 ///
 /// Compared are real paths and, where the system numbers files, these numbers: a link to a file, hard or symbolic, is that file, and so is one to a file in a
@@ -22,15 +20,14 @@ struct Input {
 }
 
 impl Inputs {
-    /// Those of `paths` that are there and are regular files or folders, and the lists of cameras that are read with COLMAP's lists of images.
+    /// Those of `paths` that are there and are regular files or folders.
     pub fn new<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Self {
         let input = |given: PathBuf| {
             let about = fs::metadata(&given).ok().filter(|about| about.is_file() || about.is_dir())?;
             let real = given.canonicalize().ok()?;
             Some(Input { given, real, number: number(&about) })
         };
-        let with_beside = |path: P| [Some(path.as_ref().to_owned()), read_beside(path.as_ref())];
-        Self { read: paths.into_iter().flat_map(with_beside).flatten().filter_map(input).collect() }
+        Self { read: paths.into_iter().map(|path| path.as_ref().to_owned()).filter_map(input).collect() }
     }
 
     /// The input, as it was given, that would be lost or changed by writing the file `path`: the same file, or a folder that holds it.

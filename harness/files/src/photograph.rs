@@ -7,7 +7,7 @@ use std::path::Path;
 /// So many bytes decide.
 const HEAD: u64 = 2048;
 /// What files that are marked name as their software.
-pub(crate) const WRITER: &str = "calibench";
+pub const WRITER: &str = "calibench";
 /// Its place in the head of an EXR: name, type and length of the attribute come before.
 const IN_EXR: &[u8] = b"software\0string\0\x09\0\0\0calibench";
 /// Bytes of a TIFF's head in which the software's name stands where it is the first of the texts.
