@@ -4,8 +4,8 @@ use std::io;
 use std::path::Path;
 
 use calibench_exchange::camera::FORMATS;
-use calibench_exchange::st_map::MapFile;
 use calibench_files::{Inputs, OutputFile, OutputFolder};
+use calibench_images::st_map::MapFile;
 
 use crate::failure::Failure;
 

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Fingerprint, Points, RENDERED, RenderedImage, encode_png, write_rendered};
+use calibench_exchange::{Fingerprint, Points, RENDERED, RenderedImage, write_rendered};
 use calibench_files::NewFolder;
+use calibench_images::encode_png;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Start};
 use calibench_random::Key;

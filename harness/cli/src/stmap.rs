@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::NamedCamera;
-use calibench_exchange::camera::inputs_of;
-use calibench_exchange::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
+use calibench_exchange::camera::{NamedCamera, inputs_of};
+use calibench_images::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
 use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 use calibench_report::plain;

@@ -3,9 +3,10 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
+use calibench_files::table::write_row;
+
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
-use calibench_files::table::write_row;
 
 /// The columns of a table of intersected points beside those of a control file: how good each point is.
 pub const POINT_QUALITY_COLUMNS: [&str; 6] = ["images", "angle_deg", "sigma0_px", "redundancy", "rejected", "note"];

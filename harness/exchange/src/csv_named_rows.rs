@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
+use calibench_files::bounded;
 use calibench_model::escape;
 use csv::StringRecord;
 
 use crate::points::{Names, PointFileError, as_a_whole, csv_error, line_of};
-use calibench_files::bounded;
 
 /// The columns of a kind of sheet.
 pub(crate) struct Form {

@@ -4,21 +4,14 @@ pub mod camera;
 pub mod control;
 mod csv_named_rows;
 pub mod fingerprint;
-pub mod photo;
 pub mod points;
 pub mod points_write;
-pub mod print;
 pub mod rendered;
-pub mod st_map;
 pub mod stations;
 
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use fingerprint::Fingerprint;
-pub use photo::{
-    DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,
-    read_photo, read_photo_as, read_with_levels, size_of, write_png,
-};
 pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};

@@ -3,13 +3,13 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use calibench_files::bounded;
+use calibench_files::table::write_table;
 use calibench_model::escape;
 use csv::StringRecord;
 
 use crate::fingerprint::Fingerprint;
 use crate::points::{Names, PointFileError, csv_error, line_of};
-use calibench_files::bounded;
-use calibench_files::table::write_table;
 
 /// The name of the list in the folder.
 pub const RENDERED: &str = "rendered.csv";

@@ -3,11 +3,11 @@
 use std::io::Read;
 use std::path::Path;
 
+use calibench_files::bounded;
 use calibench_model::Pose;
 
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
-use calibench_files::bounded;
 
 /// The columns of a pose in a station file: X0, Y0, Z0 in object units, omega, phi, kappa in degrees.
 pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"];

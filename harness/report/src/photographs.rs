@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use calibench_exchange::photo::Levels;
+use calibench_images::photo::Levels;
 use calibench_model::{PixelPoint, escape};
 use calibench_records::description::{Subject, looks};
 use calibench_records::judgement::Summary;

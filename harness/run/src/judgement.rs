@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use calibench_exchange::size_of;
 use calibench_files::NewFolder;
+use calibench_images::size_of;
 use calibench_judge::{Field, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_records::compressor::Compressor;

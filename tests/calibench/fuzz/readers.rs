@@ -4,11 +4,11 @@ use std::path::Path;
 
 use calibench_exchange::camera::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
 use calibench_exchange::control::{parse_control, write_control};
-use calibench_exchange::photo::parse_photo;
 use calibench_exchange::points::parse_points;
 use calibench_exchange::stations::{parse_observed_stations, parse_stations};
 use calibench_exchange::write_points;
 use calibench_gate::{Ceilings, Cells, FigureSums, Kept, PointSums, Verdicts, read_baseline};
+use calibench_images::photo::parse_photo;
 use calibench_measure::Registry;
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::read_rows;

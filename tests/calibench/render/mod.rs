@@ -179,7 +179,7 @@ fn what_is_rendered_is_what_a_run_measures_in() {
         let folder = render(project.path(), "mine.toml", "out", &[]);
         let mut compared = 0;
         // Records keep what a page shows of it: its levels of 8 bits.
-        let levels = |path: &Path| calibench_exchange::read_photo(path).unwrap().image.to_u8();
+        let levels = |path: &Path| calibench_images::read_photo(path).unwrap().image.to_u8();
         let records = project.path().join("records/local/mine");
         for (path, _) in files(&records) {
             if path.extension().is_some_and(|end| end == "png") {

@@ -6,8 +6,9 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use calibench_exchange::camera::{NamedCamera, format_named, write_camera};
-use calibench_exchange::{POSE_COLUMNS, station_numbers, write_png};
+use calibench_exchange::{POSE_COLUMNS, station_numbers};
 use calibench_files::write_table;
+use calibench_images::write_png;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
 use calibench_model::{Image, Pose};
 use calibench_random::{Key, Purpose, stream};

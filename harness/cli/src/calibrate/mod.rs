@@ -6,8 +6,9 @@ use calibench_calibrate::{
     BoardShape, Calibration, CalibrationError, DatumChoice, Discs, MOST_TRIED, Settings, Suspected, calibrate, prepare, suspected,
 };
 use calibench_exchange::camera::inputs_of;
-use calibench_exchange::{ControlRow, LostRows, PointFile, Points, Reading, read_control, read_observed_stations};
+use calibench_exchange::{ControlRow, LostRows, PointFile, Points, read_control, read_observed_stations};
 use calibench_files::{OutputFile, OutputFolder};
+use calibench_images::Reading;
 use calibench_model::CornerPoint;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;

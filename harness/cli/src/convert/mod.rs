@@ -9,9 +9,8 @@ use std::path::PathBuf;
 use calibench_diagnostics::nearest;
 use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
 use calibench_exchange::camera::fit::{FitError, losses};
-use calibench_exchange::camera::inputs_of;
 use calibench_exchange::camera::target::{Given, TargetError, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_bytes};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_bytes, inputs_of};
 use calibench_files::{Inputs, OutputFile, OutputFolder};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{

@@ -41,10 +41,9 @@ mod xml;
 
 use std::path::Path;
 
+use calibench_files::atomic::write_atomically;
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use serde::{Deserialize, Serialize};
-
-use calibench_files::atomic::write_atomically;
 
 pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;

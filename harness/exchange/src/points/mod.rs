@@ -8,11 +8,10 @@ mod table;
 use std::io::Read;
 use std::path::Path;
 
+use calibench_files::bounded;
 use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind, escape};
 use csv::StringRecord;
 use thiserror::Error;
-
-use calibench_files::bounded;
 
 pub use lost::{LostRow, LostRows};
 pub use names::Names;

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use calibench_exchange::{ControlRow, PhotoError};
+use calibench_exchange::ControlRow;
+use calibench_images::PhotoError;
 use calibench_measure::{Configured, Operator};
 use calibench_model::camera::{Camera, ImageSize};
 use calibench_model::{Image, PixelPoint, Start, TargetKind};

@@ -1,7 +1,8 @@
 use std::fs;
 
-use calibench_exchange::{ControlRow, read_points, write_png};
+use calibench_exchange::{ControlRow, read_points};
 use calibench_files::OutputFile;
+use calibench_images::write_png;
 use calibench_measure::Registry;
 use calibench_model::{Image, TargetKind};
 use serde_json::{Value, json};

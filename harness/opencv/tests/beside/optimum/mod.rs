@@ -5,7 +5,8 @@ mod theirs;
 use std::path::Path;
 
 use calibench_calibrate::{Optics, Settings, prepare};
-use calibench_exchange::{ControlRow, Points, read_photo};
+use calibench_exchange::{ControlRow, Points};
+use calibench_images::read_photo;
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::{PixelPoint, Start};

@@ -1,11 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::PathBuf;
 
+use calibench_files::OutputFolder;
 use calibench_model::testfield::{Area, Curve, Outline, PlatePoint};
 use calibench_model::{Plate, Testfield};
 
 use super::*;
-use calibench_files::OutputFolder;
 
 mod paper;
 

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
+use calibench_files::photograph::{WRITER, marked};
 use calibench_model::camera::ImageSize;
 use exr::prelude::{Blocks, Compression, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Text, Vec2, WritableImage};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -13,7 +14,6 @@ use tiff::tags::Tag;
 
 use super::{Pixel, StMap, StMapError};
 use crate::photo::reader;
-use calibench_files::photograph::{WRITER, marked};
 
 /// Memory of a map that is read, bytes.
 const MOST_BYTES: u64 = 4 << 30;

@@ -3,13 +3,13 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
+use calibench_files::pipelined::pipelined;
 use calibench_model::Image;
 use fdeflate::Compressor;
 use png::chunk::IDAT;
 
 use super::begin;
 use super::filters::{ABOVE, AVERAGE, LEFT, Rows, filter, size};
-use calibench_files::pipelined::pipelined;
 
 /// Bytes of levels that a band has, about: with the grey values that they are made from it stays in a processor's own memory.
 const BAND: usize = 1 << 18;

@@ -17,13 +17,12 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
+use calibench_files::atomic::write_atomically;
 use calibench_model::Image;
 use calibench_model::camera::ImageSize;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
 use tiff::encoder::{TiffEncoder, colortype};
-
-use calibench_files::atomic::write_atomically;
 
 pub use bands::encode_png;
 pub use budget::MOST_BYTES;

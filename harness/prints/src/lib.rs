@@ -9,10 +9,9 @@ mod svg;
 
 use std::io;
 
+use calibench_files::folder::NewFolder;
 use calibench_model::Testfield;
 use thiserror::Error;
-
-use calibench_files::folder::NewFolder;
 
 pub use layout::{Paper, Sheet, sheets};
 pub use pdf::pdf;
@@ -93,3 +92,8 @@ fn number(mm: f64) -> String {
 
 #[cfg(test)]
 mod tests;
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
