@@ -8,13 +8,13 @@ use std::process::{Command, Stdio};
 
 use calibench_exchange::camera::conversion::converted;
 use calibench_exchange::camera::target::{Given, goal};
-use calibench_exchange::camera::{NamedCamera, read_camera, write_camera};
+use calibench_exchange::camera::{read_camera, write_camera};
 use calibench_images::st_map::{Direction, MapFile, Overscan, StMap, Undistorted, encode};
-use calibench_model::PixelPoint;
 use calibench_model::camera::{
     Camera, CameraModel, Eucm, Fov, ImageSize, Omni, OpenCv, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
 };
 use calibench_model::convert::{ConvertOptions, Method};
+use calibench_model::{NamedCamera, PixelPoint};
 
 use crate::project::root;
 

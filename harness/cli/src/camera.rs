@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::NamedCamera;
 use calibench_model::camera::CameraModel;
-use calibench_model::escape;
+use calibench_model::{NamedCamera, escape};
 use calibench_report::camera_card;
 use calibench_report::json::CameraFileAnswer;
 use clap::Args;

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use calibench_exchange::camera::inputs_of;
-use calibench_exchange::{PointRef, PointRow, write_points};
+use calibench_exchange::write_points;
 use calibench_measure::Board as Counts;
 use calibench_model::boards::Board;
+use calibench_model::{PointRef, PointRow};
 use calibench_photographs::coded::{Coded, recognise_coded};
 use calibench_photographs::names::once;
 use calibench_photographs::{Chessboard, board_of};

@@ -4,12 +4,13 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use calibench_diagnostics::nearest;
+use calibench_exchange::camera;
 use calibench_exchange::camera::open_points::{self, OpenPoints};
 use calibench_exchange::camera::{
-    self, CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with,
+    CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, ReadOptions, format_named, read_camera_with,
 };
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
-use calibench_model::escape;
+use calibench_model::{NamedCamera, escape};
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::{NamedCamera, inputs_of};
+use calibench_exchange::camera::inputs_of;
 use calibench_images::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
-use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
+use calibench_model::{NamedCamera, PixelPoint};
 use calibench_report::plain;
 use clap::Args;
 

@@ -4,6 +4,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use calibench_files::table::write_row;
+use calibench_model::{ControlDisc, ControlRow};
 
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
@@ -23,35 +24,6 @@ const FORM: Form = Form {
     others: false,
     passed_over: &POINT_QUALITY_COLUMNS,
 };
-
-/// A point of known object coordinates.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ControlRow {
-    /// The target's name.
-    pub target: String,
-    /// X, Y, Z, object units.
-    pub position: [f64; 3],
-    /// Standard deviations of X, Y, Z, object units; `None` where the file gives none.
-    pub sigmas: Option<[f64; 3]>,
-    /// Of a disc: boxed, as few targets say so.
-    pub disc: Option<Box<ControlDisc>>,
-}
-
-/// What is known of a target that is a disc.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ControlDisc {
-    /// Object units.
-    pub radius: f64,
-    /// A normal of its plane in the object's frame, either way and of any length but zero; `None` where the file gives none.
-    pub normal: Option<[f64; 3]>,
-}
-
-impl ControlRow {
-    /// A point of known coordinates, object units.
-    pub fn new(target: impl Into<String>, position: [f64; 3]) -> Self {
-        Self { target: target.into(), position, sigmas: None, disc: None }
-    }
-}
 
 /// Reads a control file: header `target,X,Y,Z`, optionally `sX,sY,sZ`, and of discs `radius` and `nX,nY,nZ`, in any order; rows may leave each of these groups
 /// empty. The columns that `intersect` writes beside them are passed over.

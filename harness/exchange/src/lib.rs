@@ -9,13 +9,13 @@ pub mod points_write;
 pub mod rendered;
 pub mod stations;
 
-pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
-pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
+pub use camera::{CameraFile, CameraFileError, CameraFormat, ReadOptions, read_camera, read_camera_with, write_camera};
+pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use fingerprint::Fingerprint;
-pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
+pub use points::{PointFile, PointFileError, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};
-pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
+pub use stations::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_observed_stations, read_stations, station_numbers};
 
 /// The example of the README.
 #[cfg(doctest)]

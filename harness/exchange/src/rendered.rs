@@ -6,10 +6,11 @@ use std::path::Path;
 use calibench_files::bounded;
 use calibench_files::table::write_table;
 use calibench_model::escape;
+use calibench_model::points::Names;
 use csv::StringRecord;
 
 use crate::fingerprint::Fingerprint;
-use crate::points::{Names, PointFileError, csv_error, line_of};
+use crate::points::{PointFileError, csv_error, line_of};
 
 /// The name of the list in the folder.
 pub const RENDERED: &str = "rendered.csv";

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::NamedCamera;
 use calibench_exchange::{ReadOptions, read_camera_with};
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, ImageSize};
 use nalgebra::DMatrix;
 

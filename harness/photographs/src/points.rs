@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use calibench_exchange::{Outcome, Points};
+use calibench_exchange::Outcome;
 use calibench_measure::{Configured, Operator};
-use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start, stop};
+use calibench_model::{Covariance, Image, Measurement, PixelPoint, Points, Rejection, Start, stop};
 use rayon::prelude::*;
 
 use crate::names::{ambiguous, names, once};

@@ -1,8 +1,7 @@
 //! What was photographed: a board in a word, or object coordinates as an array or by names.
 
-use calibench_exchange::ControlRow;
 use calibench_judge::{Field, field_of};
-use calibench_model::boards;
+use calibench_model::{ControlRow, boards};
 use calibench_photographs::{Finder, board_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -135,7 +135,7 @@ fn points(bytes: &[u8], _: &Path) -> Result<(), String> {
         let mut text = Vec::new();
         write_points(&mut text, found.points.rows()).expect("a Vec takes all");
         let again = parse_points(FILE, &text[..]).unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&text)));
-        let seen = |points: &calibench_exchange::Points| {
+        let seen = |points: &calibench_model::Points| {
             points.rows().map(|row| (row.image.to_owned(), row.target.to_owned(), row.start.position)).collect::<Vec<_>>()
         };
         assert_eq!(seen(&again.points), seen(&found.points));

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Intersection, Search, Sight as Ray, Tolerance, intersect};
-use calibench_exchange::{POINT_QUALITY_COLUMNS, StationRow};
+use calibench_exchange::POINT_QUALITY_COLUMNS;
 use calibench_files::{Row, write_rows};
-use calibench_model::Pose;
 use calibench_model::camera::Camera;
+use calibench_model::{Pose, StationRow};
 use rayon::prelude::*;
 use statrs::distribution::{Binomial, DiscreteCDF};
 

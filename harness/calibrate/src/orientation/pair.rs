@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use calibench_adjust::approximate::{ApproximateError, ModelPoint, RelativeOrientation, Search, Shape, Tolerance, orient_relatively};
 use calibench_diagnostics::nearest;
-use calibench_exchange::Points;
 use calibench_model::camera::Camera;
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{PixelPoint, Points, Pose};
 use thiserror::Error;
 
 /// One of two images.

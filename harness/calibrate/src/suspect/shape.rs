@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use calibench_diagnostics::plain;
-use calibench_exchange::{ControlRow, Points};
+use calibench_model::{ControlRow, Points};
 use nalgebra::Point3;
 
 use super::raster::Raster;

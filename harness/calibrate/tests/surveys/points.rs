@@ -2,9 +2,8 @@
 
 use calibench_calibrate::Survey;
 use calibench_calibrate::orientation::ObjectPoints;
-use calibench_exchange::ControlRow;
 use calibench_exchange::control::parse_control;
-use calibench_model::Pose;
+use calibench_model::{ControlRow, Pose};
 
 use crate::network::{Scene, lens, wall};
 
@@ -57,7 +56,7 @@ fn errors_are_as_large_as_the_standard_deviations_say() {
 #[test]
 fn what_does_not_fit_is_counted_and_noted() {
     let exact = scene(3);
-    let mut points = calibench_exchange::Points::default();
+    let mut points = calibench_model::Points::default();
     for (index, mut row) in exact.points().rows().enumerate() {
         // Across the epipolar lines, which run along x: y of one image.
         row.start.position.y += if index == 5 { 12.0 } else { 0.0 };

@@ -10,8 +10,9 @@ use calibench_diagnostics::nearest;
 use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
 use calibench_exchange::camera::fit::{FitError, losses};
 use calibench_exchange::camera::target::{Given, TargetError, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_bytes, inputs_of};
+use calibench_exchange::camera::{CameraFormat, camera_bytes, inputs_of};
 use calibench_files::{Inputs, OutputFile, OutputFolder};
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,

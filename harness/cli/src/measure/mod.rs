@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use calibench_calibrate::Offset;
 use calibench_exchange::camera::inputs_of;
-use calibench_exchange::{MeasuredRow, Outcome, Points, write_measured};
+use calibench_exchange::{MeasuredRow, Outcome, write_measured};
 use calibench_measure::Configured;
 use calibench_measure::coverage::{all_busy, unmeasured};
-use calibench_model::TargetKind;
+use calibench_model::{Points, TargetKind};
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use calibench_report::json::{MeasurementAnswer, MeasurementCounts};
 use clap::Args;

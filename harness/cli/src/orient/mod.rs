@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{ApproximateError, Tolerance};
 use calibench_calibrate::orientation::{Pair, PairError, Seen, Side};
-use calibench_exchange::Points;
 use calibench_exchange::camera::inputs_of;
 use calibench_model::camera::Camera;
-use calibench_model::escape;
+use calibench_model::{Points, escape};
 use calibench_report::orientation;
 use clap::Args;
 

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::camera::inputs_of;
 use calibench_exchange::points::parse_points;
-use calibench_exchange::{ControlRow, read_control};
+use calibench_exchange::read_control;
 use calibench_files::{OutputFile, bounded};
-use calibench_model::TargetKind;
+use calibench_model::{ControlRow, TargetKind};
 use calibench_photographs::PhotographsError;
 use calibench_photographs::names::{names, once};
 use calibench_point::{Content, Loaded, write_page};

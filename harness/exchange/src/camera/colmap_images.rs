@@ -35,7 +35,7 @@ impl Image {
 
     fn pose(&self) -> Result<Pose, CameraFileError> {
         let [w, x, y, z] = self.q;
-        Pose::of_rt(of_quaternion([x, y, z, w])?, self.t)
+        pose::of_rt(of_quaternion([x, y, z, w])?, self.t)
     }
 }
 

@@ -8,7 +8,6 @@ mod brown;
 mod colmap_images;
 mod colmap_models;
 pub mod conversion;
-mod covariance;
 mod encoding;
 mod error;
 pub mod fit;
@@ -42,19 +41,16 @@ mod xml;
 use std::path::Path;
 
 use calibench_files::atomic::write_atomically;
-use calibench_model::camera::{Camera, CameraModel, ImageSize};
-use serde::{Deserialize, Serialize};
+use calibench_model::camera::{CameraModel, ImageSize};
+use calibench_model::named_camera::{NamedCamera, ParameterCovariance, Pose, PoseFrame, Splines};
 
-pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
 pub use format::{CameraFormat, Keeps, KeptCovariance, KeptPose, Model};
 pub use formats::{FORMATS, format_named};
 pub use kalibr_target::{kalibr_target, read_kalibr_target};
 pub use lists::{CameraList, ListWriter, Pieces, inputs_of};
-pub use pose::{Pose, PoseFrame};
 pub use source::LARGEST_FILE;
 use source::Source;
-pub use splines::Splines;
 
 /// What a camera file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,51 +59,6 @@ pub struct CameraFile {
     pub format: &'static CameraFormat,
     /// Its cameras, in the file's order; at least one.
     pub cameras: Vec<NamedCamera>,
-}
-
-/// A camera of a file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NamedCamera {
-    /// Its name in the file: of a sensor or of an image; empty where the format has none.
-    pub name: String,
-    /// The camera; of a file of splines the one of another model that is nearest to them.
-    pub camera: Camera,
-    /// The splines of such a file.
-    pub splines: Option<Box<Splines>>,
-    /// Pixel pitch, um, where the file states it.
-    pub pitch_um: Option<f64>,
-    /// Where the camera stood, in files that say it.
-    pub pose: Option<Pose>,
-    /// What the world of the pose is.
-    pub pose_frame: PoseFrame,
-    /// Covariance of the parameters, where the file states it.
-    pub covariance: Option<ParameterCovariance>,
-    /// What the user should know: what was assumed, what was left out.
-    pub notes: Vec<String>,
-    /// Whether one of these says that no lens has the camera.
-    pub implausible: bool,
-}
-
-impl NamedCamera {
-    /// A camera of which nothing else is known.
-    pub fn new(name: impl Into<String>, camera: Camera) -> Self {
-        Self {
-            name: name.into(),
-            camera,
-            splines: None,
-            pitch_um: None,
-            pose: None,
-            pose_frame: PoseFrame::World,
-            covariance: None,
-            notes: Vec::new(),
-            implausible: false,
-        }
-    }
-
-    /// Why [`Self::camera`] is not to be taken for what the file says, if so: splines that no other model comes near.
-    pub fn doubt(&self) -> Option<String> {
-        self.splines.as_ref()?.doubt()
-    }
 }
 
 /// What a file says of all its cameras goes with each.

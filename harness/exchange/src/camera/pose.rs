@@ -1,108 +1,28 @@
 //! Where a camera stood, and the many ways in which files say it.
 
-use serde::{Deserialize, Serialize};
+use calibench_model::named_camera::Pose;
 
 use super::CameraFileError;
-
-/// A camera's position and rotation, with the camera's axes of these tools: x right, y down, z forward.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pose {
-    /// Rotation from the world's axes to the camera's, 3 x 3, row by row.
-    pub camera_from_world: [[f64; 3]; 3],
-    /// Projection centre in the world, in its unit.
-    pub position: [f64; 3],
-}
-
-/// What the world of a [`Pose`] is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PoseFrame {
-    /// That of the object.
-    #[default]
-    World,
-    /// The first camera of a rig.
-    FirstCamera,
-    /// A rig's own frame, in which its first camera has a pose too.
-    Rig,
-    /// The inertial sensor of a rig.
-    Imu,
-}
 
 /// How far rows may be from perpendicular and of length one: files print six digits and fewer.
 const ORTHONORMAL: f64 = 1e-3;
 
 type Matrix = [[f64; 3]; 3];
 
-fn transposed(m: Matrix) -> Matrix {
-    std::array::from_fn(|row| std::array::from_fn(|column| m[column][row]))
+/// The pose of `X_camera = R X_world + t`.
+pub(super) fn of_rt(r: Matrix, t: [f64; 3]) -> Result<Pose, CameraFileError> {
+    Ok(Pose::of_rt(rotation(r)?, t))
 }
 
-fn product(a: Matrix, b: Matrix) -> Matrix {
-    std::array::from_fn(|row| std::array::from_fn(|column| (0..3).map(|k| a[row][k] * b[k][column]).sum()))
-}
-
-fn applied(m: Matrix, v: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|row| (0..3).map(|k| m[row][k] * v[k]).sum())
-}
-
-/// `m` with y and z reversed in its rows: from axes x right, y up, z backwards to x right, y down, z forward, and back.
-fn turned([x, y, z]: Matrix) -> Matrix {
-    [x, y.map(|v| -v), z.map(|v| -v)]
-}
-
-impl Pose {
-    /// No rotation, at the origin.
-    pub const IDENTITY: Self = Self { camera_from_world: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
-
-    /// Of `X_camera = R X_world + t`.
-    pub(super) fn of_rt(r: Matrix, t: [f64; 3]) -> Result<Self, CameraFileError> {
-        let r = rotation(r)?;
-        Ok(Self { camera_from_world: r, position: applied(transposed(r), t).map(|v| 0.0 - v) })
-    }
-
-    /// t of `X_camera = R X_world + t`.
-    pub(super) fn t(&self) -> [f64; 3] {
-        applied(self.camera_from_world, self.position).map(|v| 0.0 - v)
-    }
-
-    /// Of `X_world = R X_camera + position`.
-    pub(super) fn of_camera_to_world(r: Matrix, position: [f64; 3]) -> Result<Self, CameraFileError> {
-        Ok(Self { camera_from_world: transposed(rotation(r)?), position })
-    }
-
-    pub(super) fn world_from_camera(&self) -> Matrix {
-        transposed(self.camera_from_world)
-    }
-
-    /// The same pose, of a camera whose file has y up and z backwards; its own inverse.
-    pub(super) fn with_y_and_z_reversed(self) -> Self {
-        Self { camera_from_world: turned(self.camera_from_world), ..self }
-    }
-
-    /// This camera's pose as another camera sees it.
-    pub(super) fn seen_from(&self, other: &Self) -> Self {
-        let camera_from_world = product(self.camera_from_world, other.world_from_camera());
-        let between = std::array::from_fn(|i| self.position[i] - other.position[i]);
-        Self { camera_from_world, position: applied(other.camera_from_world, between) }
-    }
-
-    /// The pose in the world of `other`, of a camera whose pose is given as `other` sees it: undoes [`Self::seen_from`].
-    pub(super) fn out_of(&self, other: &Self) -> Self {
-        let shift = applied(other.world_from_camera(), self.position);
-        let position = std::array::from_fn(|i| other.position[i] + shift[i]);
-        Self { camera_from_world: product(self.camera_from_world, other.camera_from_world), position }
-    }
-
-    /// The pose of the camera after its own axes were turned: `X' = R X`, R 3 x 3, row by row.
-    #[must_use]
-    pub fn turned_by(&self, r: [[f64; 3]; 3]) -> Self {
-        Self { camera_from_world: product(r, self.camera_from_world), ..*self }
-    }
+/// The pose of `X_world = R X_camera + position`.
+pub(super) fn of_camera_to_world(r: Matrix, position: [f64; 3]) -> Result<Pose, CameraFileError> {
+    Ok(Pose::of_camera_to_world(rotation(r)?, position))
 }
 
 /// Checked: a rotation.
 pub(super) fn rotation(r: Matrix) -> Result<Matrix, CameraFileError> {
-    let unit = product(r, transposed(r));
-    let off = |row: usize, column: usize| (unit[row][column] - f64::from(u8::from(row == column))).abs();
+    let unit = |row: usize, column: usize| (0..3).map(|k| r[row][k] * r[column][k]).sum::<f64>();
+    let off = |row: usize, column: usize| (unit(row, column) - f64::from(u8::from(row == column))).abs();
     let determinant = r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1]) - r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0])
         + r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]);
     let good = (0..9).all(|i| off(i / 3, i % 3) <= ORTHONORMAL) && determinant > 0.0;
@@ -189,18 +109,6 @@ mod tests {
         }
         // A quarter turn around z takes x to y.
         assert!(near(of_rotation_vector([0.0, 0.0, std::f64::consts::FRAC_PI_2]), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]));
-    }
-
-    #[test]
-    fn relative_poses_come_back() {
-        let pose = |v, position| Pose { camera_from_world: of_rotation_vector(v), position };
-        let (a, b) = (pose([0.3, -0.2, 0.9], [1.0, 2.0, 3.0]), pose([-1.0, 0.2, 0.1], [-4.0, 0.5, 2.0]));
-        let back = b.seen_from(&a).out_of(&a);
-        assert!(near(back.camera_from_world, b.camera_from_world));
-        assert!(back.position.iter().zip(b.position).all(|(a, b)| (a - b).abs() < 1e-14));
-        let rt = Pose::of_rt(b.camera_from_world, b.t()).unwrap();
-        assert!(rt.position.iter().zip(b.position).all(|(a, b)| (a - b).abs() < 1e-14));
-        assert_eq!(b.with_y_and_z_reversed().with_y_and_z_reversed(), b);
     }
 
     #[test]

@@ -3,31 +3,10 @@
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Ray, Splined};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, ERROR_PX, Region, Target, fit};
-use serde::{Deserialize, Serialize};
+use calibench_model::named_camera::{Splines, within};
 
 /// Circles about the axis over which other models are fitted where a part of the frame has no ray, as shares of the one that holds the frame.
 const CIRCLES: [f64; 8] = [0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
-
-/// The splines of a file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Splines {
-    /// As the file has them.
-    pub model: Splined,
-    /// How far the camera that was fitted to them is off at most, px.
-    pub residual_px: f64,
-    /// Over what it was fitted.
-    pub region: Region,
-}
-
-impl Splines {
-    /// Why the camera that was fitted to them stands for them in nothing that is to be right; `None` where it is near enough.
-    pub fn doubt(&self) -> Option<String> {
-        let Self { residual_px, region, .. } = self;
-        let far =
-            (*residual_px > ERROR_PX).then(|| format!("the nearest camera of another model{} is {residual_px:.2} px off", within(*region)));
-        far.map(|far| format!("holds a splined model, and {far}; convert it first, with --radius PX where it is good enough or --accept"))
-    }
-}
 
 /// The camera of another model that is nearest to some splines after the best rotation, over the frame or over as much of it as has rays, and a note with its residual.
 pub(super) fn nearest(spline: Splined) -> Result<(Camera, Splines, String), String> {
@@ -51,14 +30,6 @@ pub(super) fn nearest(spline: Splined) -> Result<(Camera, Splines, String), Stri
         }
     }
     Err(format!("a splined model, to which no other can be fitted{why}"))
-}
-
-/// Over what, in words; nothing for the frame.
-fn within(region: Region) -> String {
-    match region {
-        Region::Frame => String::new(),
-        Region::Radius { px } => format!(" within {px:.0} px of its axis, as a part of the frame has no ray"),
-    }
 }
 
 /// The radius about the axis that holds the frame, px.

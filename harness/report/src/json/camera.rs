@@ -1,7 +1,9 @@
 //! A camera, and a camera file, as JSON.
 
-use calibench_exchange::camera::{CameraFile, NamedCamera, ParameterCovariance, PoseFrame};
+use calibench_exchange::camera::CameraFile;
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, CameraParameter, Convention, Verification, fold_radius, without_ray};
+use calibench_model::named_camera::{ParameterCovariance, PoseFrame};
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -1,7 +1,9 @@
 //! Bundle Adjustment in the Large: Bundler's camera, its pose as a rotation vector, after the observations.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::tool_conventions;
 use calibench_model::convert::Target;
+use calibench_model::named_camera::Pose;
 
 use super::PLAIN;
 use super::bundler::{Stream, camera, parts};
@@ -9,7 +11,7 @@ use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::number::shortest;
 use crate::camera::pose::{of_rotation_vector, rotation_vector};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "bal",
@@ -53,7 +55,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         }
         let [a, b, c, x, y, z, f, k1, k2] = v;
         let camera = camera([f, k1, k2], size).map_err(|error| error.of(format!("camera {index}")))?;
-        let pose = Pose::of_rt(of_rotation_vector([a, b, c]), [x, y, z])?.with_y_and_z_reversed();
+        let pose = pose::of_rt(of_rotation_vector([a, b, c]), [x, y, z])?.with_y_and_z_reversed();
         cameras.push(NamedCamera { pose: Some(pose), ..NamedCamera::new(index.to_string(), camera) });
     }
     Ok(cameras)

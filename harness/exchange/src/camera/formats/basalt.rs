@@ -1,7 +1,9 @@
 //! basalt's calibration JSON: cameras of a rig with an inertial sensor.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, Fov, ImageSize, OpenCv, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::named_camera::{Pose, PoseFrame};
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
@@ -10,7 +12,7 @@ use crate::camera::number::{row, shortened, shortest};
 use crate::camera::pose::{of_quaternion, quaternion};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, PoseFrame, ReadOptions, json, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, json, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "basalt",
@@ -72,7 +74,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {
     let value = |name| entry.number_of(name);
     let rotation = of_quaternion([value("qx")?, value("qy")?, value("qz")?, value("qw")?]).map_err(|error| error.on_line(entry.line))?;
-    Pose::of_camera_to_world(rotation, [value("px")?, value("py")?, value("pz")?])
+    pose::of_camera_to_world(rotation, [value("px")?, value("py")?, value("pz")?])
 }
 
 fn camera(entry: &Entry, size: ImageSize, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {

@@ -1,8 +1,8 @@
 //! Bentley's BlocksExchange XML: each `<Photogroup>` is a camera.
 
-use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::{NamedCamera, PixelPoint};
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -10,7 +10,7 @@ use crate::camera::brown::{Brown, middle, positive};
 use crate::camera::format::{Keeps, Model};
 use crate::camera::number::{finite, pixels, shortened, shortest};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, xml};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "bentley",

@@ -1,14 +1,16 @@
 //! Bundler's bundle.out: focal length, two radial coefficients and a pose for each image; y up, the principal point in the middle.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, ImageSize, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::named_camera::Pose;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, middle};
 use crate::camera::format::{Keeps, KeptPose, Model};
 use crate::camera::number::{finite, numbers, shortest};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "bundler",
@@ -69,7 +71,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
             continue;
         }
         let camera = camera(inner, options.size_or(None)?).map_err(|error| error.on_line(line))?;
-        let pose = Pose::of_rt(rows, t).map_err(|error| error.on_line(line))?.with_y_and_z_reversed();
+        let pose = pose::of_rt(rows, t).map_err(|error| error.on_line(line))?.with_y_and_z_reversed();
         cameras.push(NamedCamera { pose: Some(pose), ..NamedCamera::new(index.to_string(), camera) });
     }
     let note = (unused > 0).then(|| format!("{unused} images that are not oriented were left out"));

@@ -1,14 +1,16 @@
 //! Bouguet's toolbox: Calib_Results.m, with its uncertainties, which are three standard deviations.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::named_camera::ParameterCovariance;
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
 use crate::camera::format::{Keeps, KeptCovariance, Model};
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "caltech",

@@ -1,5 +1,6 @@
 //! camodocal's YAML, an OpenCV FileStorage with names of its own.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Omni, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
 
@@ -10,7 +11,7 @@ use crate::camera::format::{Keeps, Model};
 use crate::camera::number::{shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "camodocal",

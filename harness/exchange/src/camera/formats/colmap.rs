@@ -1,5 +1,6 @@
 //! COLMAP's cameras.txt.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
@@ -8,7 +9,7 @@ use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::numbering::Numbering;
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, colmap_models};
 
 pub(in crate::camera) static FORMAT: CameraFormat = CameraFormat {
     name: "colmap",

@@ -1,5 +1,6 @@
 //! COLMAP's cameras.bin: what cameras.txt says, as numbers of little-endian bytes.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
@@ -8,7 +9,7 @@ use crate::camera::ids::Ids;
 use crate::camera::little_endian::{Bytes, Stream};
 use crate::camera::number::pixels;
 use crate::camera::numbering::Numbering;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, colmap_models};
 
 pub(in crate::camera) static FORMAT: CameraFormat = CameraFormat {
     name: "colmap-bin",

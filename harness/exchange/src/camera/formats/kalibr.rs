@@ -1,7 +1,9 @@
 //! Kalibr's camchain YAML: cameras of a rig, each with the transformation from the one before.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, Fov, ImageSize, Omni, OpenCv, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::named_camera::{Pose, PoseFrame};
 
 use super::PLAIN;
 use super::opencv_yaml::{quoted, tree};
@@ -12,7 +14,7 @@ use crate::camera::pose::rigid;
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
 use crate::camera::tree::left_out;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, PoseFrame, ReadOptions, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "kalibr",
@@ -89,7 +91,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 }
 
 fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {
-    let found = entry.rows().and_then(|rows| rigid(&rows)).and_then(|(r, t)| Pose::of_rt(r, t));
+    let found = entry.rows().and_then(|rows| rigid(&rows)).and_then(|(r, t)| pose::of_rt(r, t));
     found.map_err(|error| if error.line.is_some() { error } else { error.on_line(entry.line) })
 }
 

@@ -1,5 +1,6 @@
 //! kapture's sensors.txt: COLMAP's models between commas, beside sensors of other kinds.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
@@ -8,7 +9,7 @@ use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::numbering::Numbering;
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, colmap_models, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "kapture",

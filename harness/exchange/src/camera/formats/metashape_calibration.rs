@@ -1,10 +1,11 @@
 //! The calibration XML of Metashape, and the one with `fx`, `fy` of PhotoScan before 1.2 and of Lens.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize};
 
 use super::PLAIN;
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, agisoft, xml};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, agisoft, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "metashape",

@@ -2,7 +2,9 @@
 //!
 //! Each sensor is a camera here. The images' poses belong to the block, not to the cameras, and are not read.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize};
+use calibench_model::named_camera::ParameterCovariance;
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -10,7 +12,7 @@ use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::ids::Ids;
 use crate::camera::number::{finite, scientific};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions, agisoft, xml};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, agisoft, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "metashape-cameras",

@@ -1,5 +1,6 @@
 //! MicMac's AutoCal: `<CalibrationInternConique>` with ModNoDist, ModRad or ModPhgrStd.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, MicMac, micmac};
 use calibench_model::convert::Target;
 use roxmltree::Node;
@@ -9,7 +10,7 @@ use crate::camera::brown::positive;
 use crate::camera::format::{Keeps, Model};
 use crate::camera::number::{finite, numbers, scientific, shortened};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, xml};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "micmac",

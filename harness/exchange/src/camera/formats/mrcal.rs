@@ -1,7 +1,9 @@
 //! mrcal's .cameramodel: a Python dictionary. A splined model is fitted by one that other tools have, and its residual is said.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, Eucm, ImageSize, OpenCv, Splined, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::named_camera::Pose;
 
 use super::PLAIN;
 use crate::camera::brown::positive;
@@ -11,7 +13,7 @@ use crate::camera::pose::{of_rotation_vector, rotation_vector};
 use crate::camera::source::Source;
 use crate::camera::splines::{Splines, nearest};
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, json};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, json};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "mrcal",
@@ -79,7 +81,7 @@ fn pose(root: &Entry) -> Result<Option<Pose>, CameraFileError> {
     {
         return Err(at.wrong(&format!("says another pose than `{name}`")).of(other));
     }
-    Pose::of_rt(of_rotation_vector([a, b, c]), [x, y, z]).map(Some).map_err(|error| error.on_line(entry.line).of(name))
+    pose::of_rt(of_rotation_vector([a, b, c]), [x, y, z]).map(Some).map_err(|error| error.on_line(entry.line).of(name))
 }
 
 fn parametric(model: &str, size: ImageSize, v: &[f64]) -> Result<Camera, CameraFileError> {

@@ -2,7 +2,8 @@
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
-use calibench_model::{CornerPoint, PixelPoint};
+use calibench_model::named_camera::Pose;
+use calibench_model::{CornerPoint, NamedCamera, PixelPoint};
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
@@ -12,7 +13,7 @@ use crate::camera::number::{row, shortened, shortest};
 use crate::camera::pose::rigid;
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "nerfstudio",
@@ -90,7 +91,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 
 /// From the camera to the world, the camera with y up and z backwards.
 fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {
-    let found = entry.rows().and_then(|rows| rigid(&rows)).and_then(|(r, position)| Pose::of_camera_to_world(r, position));
+    let found = entry.rows().and_then(|rows| rigid(&rows)).and_then(|(r, position)| pose::of_camera_to_world(r, position));
     let found = found.map_err(|error| if error.line.is_some() { error } else { error.on_line(entry.line) }.of("transform_matrix"))?;
     Ok(found.with_y_and_z_reversed())
 }

@@ -5,7 +5,8 @@ use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::json::{json, quoted};
 use crate::camera::number::row;
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, opencv};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, opencv};
+use calibench_model::NamedCamera;
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "opencv-json",

@@ -1,5 +1,6 @@
 //! OpenCV's FileStorage in XML; Metashape's export for OpenCV is one.
 
+use calibench_model::NamedCamera;
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -7,7 +8,7 @@ use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::scientific;
 use crate::camera::source::Source;
 use crate::camera::tree::{self, Entry, Value};
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, opencv, xml};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, opencv, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "opencv-xml",

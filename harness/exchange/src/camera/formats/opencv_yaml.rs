@@ -1,5 +1,6 @@
 //! OpenCV's FileStorage in YAML.
 
+use calibench_model::NamedCamera;
 use saphyr_parser::{Event, Parser, Span, StrInput};
 
 use super::PLAIN;
@@ -7,7 +8,7 @@ use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{scientific, shortened};
 use crate::camera::source::Source;
 use crate::camera::tree::{self, Entry, Value};
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, opencv};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, opencv};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "opencv-yaml",

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
 
@@ -13,7 +14,7 @@ use crate::camera::json;
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "openmvg",

@@ -1,8 +1,8 @@
 //! OpenSfM's and OpenDroneMap's camera_models.json, camera_models_overrides.json, cameras.json: units of the longer side, from the middle.
 
-use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
+use calibench_model::{NamedCamera, PixelPoint};
 
 use super::PLAIN;
 use crate::camera::brown::{Brown, middle, positive};
@@ -11,7 +11,7 @@ use crate::camera::json::{self, quoted};
 use crate::camera::number::{shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "opensfm",

@@ -1,12 +1,14 @@
 //! Our own camera file: the canonical interior orientation in TOML, every unit in its key, unknown keys refused.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::named_camera::ParameterCovariance;
 
 use super::PLAIN;
 use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::photogrammetric_toml::{CovarianceRows, Head, Wire};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "photogrammetric",

@@ -1,6 +1,8 @@
 //! The camera XML of the oldest PhotoScan: a calibration and a pose for each image, below `<collection>`.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize};
+use calibench_model::named_camera::Pose;
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -8,7 +10,7 @@ use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::ids::Ids;
 use crate::camera::number::{numbers, scientific};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, agisoft, xml};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, agisoft, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "photoscan-cameras",

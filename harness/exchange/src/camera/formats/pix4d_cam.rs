@@ -2,13 +2,14 @@
 //!
 //! The file states the sensor's size in mm but not the image's in px: that must be given. Px and Py count from the upper left corner.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, Pix4d, TangentialOrder};
 
 use super::PLAIN;
 use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{finite, fixed, shortened};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "pix4d",

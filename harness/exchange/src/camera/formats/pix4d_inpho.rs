@@ -4,6 +4,7 @@
 //! `T_i = DEC_DIST_i FOCAL^2`: confirmed by the camera matrix and the coefficients that Pix4D wrote of the same project. The sizes of sensor and
 //! image stand in its comments, so a .cam of INPHO's own, without them, is refused.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
 use super::PLAIN;
@@ -11,7 +12,7 @@ use super::pix4d_cam::{camera, sensor, width_of_sensor};
 use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{finite, fixed, pixels, shortened};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "pix4d-inpho",

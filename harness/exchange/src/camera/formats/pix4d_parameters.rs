@@ -1,13 +1,15 @@
 //! Pix4D's calibrated_camera_parameters.txt: for each image its size, K, R1 to R3, T1, T2, position and rotation.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
+use calibench_model::named_camera::Pose;
 
 use super::PLAIN;
 use super::pix4d_cam::camera;
 use crate::camera::format::{Keeps, KeptCovariance, KeptPose};
 use crate::camera::number::{fixed, numbers, pixels};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "pix4d-parameters",

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, Pix4d, TangentialOrder};
+use calibench_model::named_camera::Pose;
 
 use super::PLAIN;
 use crate::camera::number::numbers;
 use crate::camera::source::{self, Source};
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "pix4d-pmatrix",

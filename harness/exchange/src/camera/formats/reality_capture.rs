@@ -1,6 +1,8 @@
 //! RealityCapture's and RealityScan's XMP beside an image.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::tool_conventions;
+use calibench_model::named_camera::Pose;
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -8,7 +10,7 @@ use crate::camera::format::{Keeps, KeptPose};
 use crate::camera::number::{finite, numbers, shortened, shortest};
 use crate::camera::reality_scan::{self, Coefficients, DIVISION, Lengths};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, Lens, NamedCamera, Pose, ReadOptions, xml};
+use crate::camera::{CameraFileError, CameraFormat, Lens, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "reality-capture",

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{ImageSize, tool_conventions};
+use calibench_model::named_camera::Pose;
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
 
 use super::PLAIN;
@@ -10,7 +12,7 @@ use crate::camera::format::{Keeps, KeptPose};
 use crate::camera::number::{finite, shortened, shortest};
 use crate::camera::reality_scan::{self, DIVISION, Lengths};
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, Lens, NamedCamera, Pose, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, Lens, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "reality-scan-csv",
@@ -119,7 +121,7 @@ fn camera(row: &StringRecord, places: &HashMap<usize, usize>, size: ImageSize, l
     // A row without distortion is the same camera in any model.
     let lens = if d == [0.0; 6] { Lens::Brown } else { lens };
     let camera = reality_scan::camera(size, &lengths, &d, lens)?;
-    let pose = Pose::of_camera_to_world(world_from_camera([yaw, pitch, roll]), [x, y, z])?.with_y_and_z_reversed();
+    let pose = pose::of_camera_to_world(world_from_camera([yaw, pitch, roll]), [x, y, z])?.with_y_and_z_reversed();
     let notes = if lens == Lens::Division { vec![DIVISION.to_owned()] } else { Vec::new() };
     Ok(NamedCamera { pose: Some(pose), notes, ..NamedCamera::new(word(0).unwrap_or_default(), camera) })
 }

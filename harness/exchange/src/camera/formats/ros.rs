@@ -1,5 +1,6 @@
 //! ROS: the YAML that camera_calibration writes and camera_info_manager reads.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
 
@@ -11,7 +12,7 @@ use crate::camera::number::{row, shortened};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
 use crate::camera::tree::left_out;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "ros",

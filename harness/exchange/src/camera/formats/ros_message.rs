@@ -1,5 +1,6 @@
 //! ROS: a `sensor_msgs/CameraInfo` message as `rostopic echo` and `ros2 topic echo` print it.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::tool_conventions;
 
 use super::PLAIN;
@@ -8,7 +9,7 @@ use super::ros::{check, of_model, rectified};
 use crate::camera::number::pixels;
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "ros-message",

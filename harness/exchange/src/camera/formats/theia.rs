@@ -1,5 +1,6 @@
 //! Theia's calibration JSON: `priors`, one for each image.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, Fov, ImageSize, OpenCvFisheye, tool_conventions};
 use calibench_model::convert::Target;
 
@@ -10,7 +11,7 @@ use crate::camera::json::{self, quoted};
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, noted};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "theia",

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+use calibench_model::NamedCamera;
+
 use super::lines::Lines;
 use super::numbers::Numbers;
 use super::{Records, Stop, opened, whole_lines};
@@ -11,7 +13,7 @@ use crate::camera::formats::{FORMATS, colmap, colmap_bin};
 use crate::camera::ids;
 use crate::camera::little_endian::Bytes;
 use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 /// Bytes of lines that are no cameras, at most.
 const OTHERS: usize = 1 << 20;

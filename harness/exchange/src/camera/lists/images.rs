@@ -5,12 +5,14 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
 
+use calibench_model::NamedCamera;
+
 use super::lines::Lines;
 use super::{Records, Stop, cameras, head, opened};
 use crate::camera::colmap_images::{self, Image, in_text, of_image, without_cameras};
 use crate::camera::formats::{colmap, colmap_bin};
 use crate::camera::little_endian::Bytes;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, ReadOptions};
 
 /// Cameras that are kept as they are.
 const KEPT: usize = 4096;

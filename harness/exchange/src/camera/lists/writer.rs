@@ -3,7 +3,8 @@
 use super::CameraList;
 use crate::camera::format::Parts;
 use crate::camera::numbering::Numbering;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, checked_for, is_readable};
+use crate::camera::{CameraFileError, CameraFormat, checked_for, is_readable};
+use calibench_model::NamedCamera;
 
 /// The bytes of a list, a piece after the other: together they are those of [`super::super::camera_bytes`].
 pub struct ListWriter {

@@ -1,8 +1,9 @@
 //! Image points, column by column.
 
-use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind};
-
 use super::{Names, PointRow};
+use crate::frames::{Covariance, PixelPoint};
+use crate::observation::Start;
+use crate::target::{Affine, TargetKind};
 
 /// Image points in the order given. Names are kept once and numbers in columns: 24 bytes a point, and what is known of its shape and its covariance.
 #[derive(Clone, Debug, Default)]

@@ -1,8 +1,9 @@
 //! Covariances of a camera's parameters.
 
-use calibench_model::camera::{Camera, CameraModel};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
+
+use crate::camera::{Camera, CameraModel};
 
 /// Covariance of a camera's parameters, in their own units. Parameters that are not named were held fixed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,9 +85,8 @@ impl ParameterCovariance {
 
 #[cfg(test)]
 mod tests {
-    use calibench_model::camera::{ImageSize, OpenCv};
-
     use super::*;
+    use crate::camera::{ImageSize, OpenCv};
 
     #[test]
     fn what_a_file_names_has_its_place_among_all_parameters() {
