@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use calibench_exchange::{read_camera, read_control, read_stations};
+use calibench_cameras::read_camera;
+use calibench_exchange::{read_control, read_stations};
 use calibench_model::camera::CameraModel;
 use calibench_model::{NamedCamera, StationRow};
 use nalgebra::{Matrix3, Rotation3, Vector3};

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_exchange::write_points;
 use calibench_measure::Board as Counts;
 use calibench_model::boards::Board;
 use calibench_model::{PointRef, PointRow};
+use calibench_photographs::Chessboard;
 use calibench_photographs::coded::{Coded, recognise_coded};
 use calibench_photographs::names::once;
-use calibench_photographs::{Chessboard, board_of};
 use calibench_recognise::{Classifier, NotRecognised, Recogniser};
 use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject, ViewsSubject};
@@ -19,6 +19,7 @@ use super::context::{Context, finder};
 use super::output;
 use super::photos::AsRead;
 use super::progress::Progress;
+use crate::board::board_of;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 

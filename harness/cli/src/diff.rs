@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::{Difference, DifferenceOptions, Vector, difference, difference_at};

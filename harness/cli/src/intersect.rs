@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_calibrate::Survey;
 use calibench_calibrate::orientation::{ObjectPoints, poses_of};
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_exchange::read_stations;
 use calibench_report::plain;
 use clap::Args;

@@ -7,6 +7,7 @@
 mod say;
 
 mod bless;
+mod board;
 mod calibrate;
 mod camera;
 mod camera_files;

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::camera::FORMATS;
+use calibench_cameras::FORMATS;
 use calibench_files::{Inputs, OutputFile, OutputFolder};
 use calibench_images::st_map::MapFile;
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_files::{Inputs, OutputFile};
 use calibench_report::sweep;
 use calibench_report::sweep::{Choice, Layout, LoadedSweep, Metric};

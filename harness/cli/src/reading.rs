@@ -3,12 +3,9 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use calibench_cameras::open_points::{self, OpenPoints};
+use calibench_cameras::{CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, ReadOptions, format_named, read_camera_with};
 use calibench_diagnostics::nearest;
-use calibench_exchange::camera;
-use calibench_exchange::camera::open_points::{self, OpenPoints};
-use calibench_exchange::camera::{
-    CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, ReadOptions, format_named, read_camera_with,
-};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
 use calibench_model::{NamedCamera, escape};
 use clap::{Args, ValueEnum};
@@ -113,8 +110,8 @@ impl Reading {
 
     fn options(&self) -> ReadOptions {
         let lens = self.lens.map(|lens| match lens {
-            Lens::Brown => camera::Lens::Brown,
-            Lens::Division => camera::Lens::Division,
+            Lens::Brown => calibench_cameras::Lens::Brown,
+            Lens::Division => calibench_cameras::Lens::Division,
         });
         ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from, ignore: self.ignore.clone() }
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_calibrate::orientation::{Orientations, resect_images};
 use calibench_calibrate::{Survey, few};
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_exchange::read_control;
 use calibench_report::plain;
 use clap::Args;

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_measure::coverage::all_busy;
 use calibench_measure::{Configured, Operator, Sought};
 use calibench_model::{Image, Start};

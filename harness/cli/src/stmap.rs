@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_images::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
 use calibench_model::camera::ImageSize;
 use calibench_model::{NamedCamera, PixelPoint};

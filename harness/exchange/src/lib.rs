@@ -1,6 +1,5 @@
-//! Files of other tools: cameras, image coordinates, control, stations and photographs; testfields for the printer.
+//! Tables of other tools and of ours: image coordinates, control, stations, and the list of rendered images.
 
-pub mod camera;
 pub mod control;
 mod csv_named_rows;
 pub mod fingerprint;
@@ -9,7 +8,6 @@ pub mod points_write;
 pub mod rendered;
 pub mod stations;
 
-pub use camera::{CameraFile, CameraFileError, CameraFormat, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use fingerprint::Fingerprint;
 pub use points::{PointFile, PointFileError, read_points};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_files::Inputs;
 use calibench_scenario::catalogue::{Catalogue, LOCAL, is_toml};
 use calibench_scenario::{Scenario, Subject};

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use calibench_exchange::camera::{FORMATS, camera_text};
+use calibench_cameras::{FORMATS, camera_text};
 use calibench_exchange::{POSE_COLUMNS, station_numbers, write_points};
 use calibench_files::{NewFolder, write_table};
 use calibench_model::camera::{Camera, ImageSize};

@@ -18,7 +18,7 @@ const KNOTS: [&str; 20] = [
     "calibrate: calibration, over_frame",
     "detect: chessboard/candidates, chessboard/level, chessboard/side",
     "detect: corners, instead, markers, reasons",
-    "exchange: folder/left_over, folder/scratch",
+    "files: folder/left_over, folder/scratch",
     "measure: operators/ellipse_edges/conic, operators/ellipse_edges/sectors",
     "measure: operators/lsm/border, operators/lsm/planes, operators/lsm/sweep",
     "measure: operators/parametric_corner/lists, operators/parametric_corner/places, operators/parametric_corner/window",

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
+use calibench_cameras::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
 use calibench_exchange::control::{parse_control, write_control};
 use calibench_exchange::points::parse_points;
 use calibench_exchange::stations::{parse_observed_stations, parse_stations};

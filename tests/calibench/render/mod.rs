@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-use calibench_exchange::camera::read_camera;
+use calibench_cameras::read_camera;
 use calibench_scenario::Subject;
 use calibench_scenario::catalogue::Catalogue;
 

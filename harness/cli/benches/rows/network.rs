@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use calibench_exchange::camera::{format_named, write_camera};
+use calibench_cameras::{format_named, write_camera};
 use calibench_exchange::{POSE_COLUMNS, station_numbers};
 use calibench_files::write_table;
 use calibench_images::write_png;

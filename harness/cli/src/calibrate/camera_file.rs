@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use calibench_calibrate::Calibration;
-use calibench_exchange::camera::conversion::ConversionError;
-use calibench_exchange::camera::fit::losses;
-use calibench_exchange::camera::for_file::{FileCamera, FileCameraError, beside, for_file, one_file_for, own_file};
-use calibench_exchange::camera::{camera_bytes, write_camera};
+use calibench_cameras::conversion::ConversionError;
+use calibench_cameras::fit::losses;
+use calibench_cameras::for_file::{FileCamera, FileCameraError, beside, for_file, one_file_for, own_file};
+use calibench_cameras::{camera_bytes, write_camera};
 use calibench_files::OutputFile;
 use calibench_model::NamedCamera;
 use calibench_model::convert::ConvertError;

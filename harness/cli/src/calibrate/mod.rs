@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use calibench_calibrate::{
     BoardShape, Calibration, CalibrationError, DatumChoice, Discs, MOST_TRIED, Settings, Suspected, calibrate, prepare, suspected,
 };
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_exchange::{PointFile, read_control, read_observed_stations};
 use calibench_files::{OutputFile, OutputFolder};
 use calibench_images::Reading;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
 use calibench_model::{ControlRow, CornerPoint, LostRows, Points};
-use calibench_photographs::{Chessboard, Corners, Photo, Reader, board_of};
+use calibench_photographs::{Chessboard, Corners, Photo, Reader};
 use calibench_report::calibration::{Pictured, scene_ply, summary, write_report};
 use calibench_report::json::CalibrationAnswer;
 use clap::Args;
@@ -22,6 +22,7 @@ use super::convert::positive;
 use super::photos::AsRead;
 use super::reading::Origin;
 use super::{inputs, output, reading};
+use crate::board::board_of;
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 

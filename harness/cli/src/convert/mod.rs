@@ -6,11 +6,11 @@ mod said;
 use std::io;
 use std::path::PathBuf;
 
+use calibench_cameras::conversion::{ConversionError, Converted, converted};
+use calibench_cameras::fit::{FitError, losses};
+use calibench_cameras::target::{Given, TargetError, goal};
+use calibench_cameras::{CameraFormat, camera_bytes, inputs_of};
 use calibench_diagnostics::nearest;
-use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
-use calibench_exchange::camera::fit::{FitError, losses};
-use calibench_exchange::camera::target::{Given, TargetError, goal};
-use calibench_exchange::camera::{CameraFormat, camera_bytes, inputs_of};
 use calibench_files::{Inputs, OutputFile, OutputFolder};
 use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::{inputs_of, published_camera};
 use calibench_exchange::read_control;
 use calibench_images::Reading;
-use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, published_camera, stated_sigma, usual_models};
+use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, stated_sigma, usual_models};
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
-use calibench_photographs::{Chessboard, board_of};
+use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
 use calibench_report::json::JudgementAnswer;
 use calibench_report::judgement::{in_use as in_words, section, verdict};
@@ -20,6 +20,7 @@ use super::context::Context;
 use super::convert::positive;
 use super::photos::AsRead;
 use super::{output, reading};
+use crate::board::board_of;
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 

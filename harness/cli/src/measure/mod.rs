@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::Offset;
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_exchange::{MeasuredRow, Outcome, write_measured};
 use calibench_measure::Configured;
 use calibench_measure::coverage::{all_busy, unmeasured};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{ApproximateError, Tolerance};
 use calibench_calibrate::orientation::{Pair, PairError, Seen, Side};
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_model::camera::Camera;
 use calibench_model::{Points, escape};
 use calibench_report::orientation;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::camera::inputs_of;
+use calibench_cameras::inputs_of;
 use calibench_exchange::points::parse_points;
 use calibench_exchange::read_control;
 use calibench_files::{OutputFile, bounded};

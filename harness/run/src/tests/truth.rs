@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::camera::read_camera;
+use calibench_cameras::read_camera;
 use calibench_exchange::{read_control, read_stations};
 use calibench_files::{NewFolder, OutputFolder};
 use calibench_model::TargetKind;
