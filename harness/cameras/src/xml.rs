@@ -1,6 +1,7 @@
 //! XML, within limits, with lines in errors.
 
 use calibench_model::camera::ImageSize;
+use calibench_model::escape;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::CameraFileError;
@@ -108,20 +109,13 @@ pub(super) fn root_is(document: Option<&Document<'_>>, name: &str) -> Result<(),
 
 /// Text as it stands in XML.
 pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            // OpenCV refuses the bare character.
-            '\'' => out.push_str("&apos;"),
-            '\t' | '\n' | '\r' => out.push_str(&format!("&#{};", c as u32)),
-            // XML has no way to write other control characters.
-            c if c.is_control() => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
+    escape::markup(text, |c| match c {
+        '"' => Some("&quot;".into()),
+        // OpenCV refuses the bare character.
+        '\'' => Some("&apos;".into()),
+        '\t' | '\n' | '\r' => Some(format!("&#{};", c as u32).into()),
+        // XML has no way to write other control characters.
+        c if c.is_control() => Some("\u{fffd}".into()),
+        _ => None,
+    })
 }

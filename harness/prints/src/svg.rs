@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
+use calibench_model::escape;
 use calibench_model::testfield::{Area, Curve};
 
 use super::layout::Sheet;
@@ -76,14 +77,5 @@ fn colour(grey: f64) -> String {
 }
 
 fn escaped(text: &str) -> String {
-    let plain = text.chars().filter(|c| !c.is_control());
-    plain.fold(String::new(), |mut done, c| {
-        match c {
-            '&' => done.push_str("&amp;"),
-            '<' => done.push_str("&lt;"),
-            '>' => done.push_str("&gt;"),
-            _ => done.push(c),
-        }
-        done
-    })
+    escape::markup(text, |c| c.is_control().then_some("".into()))
 }
