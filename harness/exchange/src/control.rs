@@ -3,7 +3,7 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use calibench_files::table::write_row;
+use calibench_files::write_table;
 use calibench_model::{ControlDisc, ControlRow};
 
 use crate::csv_named_rows::{Form, Row, wrong};
@@ -52,18 +52,17 @@ pub fn write_control<'a>(output: impl Write, rows: impl IntoIterator<Item = &'a 
     let any = |has: fn(&ControlRow) -> bool| rows.iter().any(|row| has(row));
     let has_normal = |row: &ControlRow| row.disc.as_ref().is_some_and(|disc| disc.normal.is_some());
     let there = [any(|row| row.sigmas.is_some()), any(|row| row.disc.is_some()), any(has_normal)];
-    let mut writer = csv::Writer::from_writer(output);
     let columns = FORM.optional.iter().zip(&there).filter(|(_, there)| **there).flat_map(|(group, _)| *group);
-    writer.write_record(std::iter::once(&FORM.key).chain(FORM.required).chain(columns))?;
-    for row in rows {
+    let columns: Vec<&str> = std::iter::once(&FORM.key).chain(FORM.required).chain(columns).copied().collect();
+    let cells = |row: &ControlRow| {
         let group = |(numbers, columns): (Option<Vec<f64>>, &&[&str])| {
             numbers.map_or_else(|| vec![String::new(); columns.len()], |numbers| numbers.iter().map(f64::to_string).collect())
         };
         let optional = groups(row).into_iter().zip(FORM.optional).zip(&there).filter(|(_, there)| **there).flat_map(|(it, _)| group(it));
         let numbers = row.position.iter().map(f64::to_string).chain(optional);
-        write_row(&mut writer, std::iter::once(row.target.clone()).chain(numbers))?;
-    }
-    writer.flush()
+        std::iter::once(row.target.clone()).chain(numbers).collect::<Vec<String>>()
+    };
+    write_table(output, &columns, rows.into_iter().map(cells))
 }
 
 /// The numbers of a row's optional groups.

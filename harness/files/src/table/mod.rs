@@ -2,8 +2,6 @@
 
 use std::io::{self, Write};
 
-use calibench_model::escape;
-
 pub use csv_row::Row;
 
 use crate::pipelined::pipelined;
@@ -14,28 +12,35 @@ mod csv_row;
 const PIECE: usize = 1 << 10;
 /// Pieces that wait in memory.
 const BATCH: usize = 64;
+/// Bytes that are handed on at once.
+const LONG: usize = 1 << 14;
 
-/// Writes a header and rows, each with as many cells, names as [`escape::cell`] has them.
+/// Writes a header and rows, each with as many cells, names as [`escape::cell`](calibench_model::escape::cell) has them: the readers of points, control and stations undo that.
 ///
 /// # Errors
 /// What the output refuses; a row with another number of cells than the header.
-pub fn write_table<R>(output: impl Write, columns: &[&str], rows: impl IntoIterator<Item = R>) -> io::Result<()>
+pub fn write_table<R>(mut output: impl Write, columns: &[&str], rows: impl IntoIterator<Item = R>) -> io::Result<()>
 where
     R: IntoIterator<Item: AsRef<str>>,
 {
-    let mut writer = csv::Writer::from_writer(output);
-    writer.write_record(columns)?;
-    rows.into_iter().try_for_each(|row| write_row(&mut writer, row))?;
-    writer.flush()
+    let mut piece = header(columns)?;
+    for row in rows {
+        row.into_iter().for_each(|cell| piece.text(cell.as_ref()));
+        piece.end(columns.len())?;
+        if piece.bytes().len() >= LONG {
+            output.write_all(piece.bytes())?;
+            piece = Row::default();
+        }
+    }
+    output.write_all(piece.bytes())?;
+    output.flush()
 }
 
-/// Writes a row whose names no spreadsheet takes for formulas; the readers of points, control and stations undo that.
-///
-/// # Errors
-/// What the output refuses.
-pub fn write_row<W: Write>(writer: &mut csv::Writer<W>, cells: impl IntoIterator<Item: AsRef<str>>) -> csv::Result<()> {
-    cells.into_iter().try_for_each(|cell| writer.write_field(escape::cell(cell.as_ref()).as_bytes()))?;
-    writer.write_record(None::<&[u8]>)
+fn header(columns: &[&str]) -> io::Result<Row> {
+    let mut header = Row::default();
+    columns.iter().for_each(|column| header.text(column));
+    header.end(columns.len())?;
+    Ok(header)
 }
 
 /// Writes a header and `count` rows: [`write_made_rows`] of their numbers.
@@ -65,10 +70,7 @@ pub fn write_made_rows<R: Send>(
         }
         Ok(piece)
     };
-    let mut header = Row::default();
-    columns.iter().for_each(|column| header.text(column));
-    header.end(columns.len())?;
-    output.write_all(header.bytes())?;
+    output.write_all(header(columns)?.bytes())?;
     let mut given = given.into_iter().fuse();
     let pieces = std::iter::from_fn(|| Some(given.by_ref().take(PIECE).collect()).filter(|piece: &Vec<R>| !piece.is_empty()));
     pipelined(pieces, BATCH, piece, |piece| output.write_all(piece.bytes()))?;
