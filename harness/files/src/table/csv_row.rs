@@ -24,12 +24,12 @@ impl Row {
         self.bytes.push(b'"');
     }
 
-    /// A number with the fewest digits from which it is read back, without an exponent.
+    /// A number with the fewest digits from which it is read back, without an exponent: as `{number}` writes it.
     pub fn number(&mut self, number: f64) {
         self.next();
         let mut buffer = ryu::Buffer::new();
         let shortest = buffer.format(number);
-        if number.is_finite() && !shortest.contains('e') {
+        if number.is_finite() && !shortest.contains('e') && !is_halfway(number, shortest) {
             self.bytes.extend_from_slice(shortest.strip_suffix(".0").unwrap_or(shortest).as_bytes());
         } else {
             let _ = write!(self.bytes, "{number}");
@@ -63,4 +63,14 @@ impl Row {
     pub(super) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
+}
+
+/// Whether a number lies halfway between two that are as short as `shortest`, of which others may write the other one: in decimals it has one digit more, a 5.
+fn is_halfway(number: f64, shortest: &str) -> bool {
+    let decimals = shortest.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i32);
+    let bits = number.to_bits();
+    let (exponent, mantissa) = ((bits >> 52 & 0x7ff) as i32, bits & ((1 << 52) - 1) | 1 << 52);
+    // So many binary places it has, and as many decimals.
+    let places = 1075 - exponent - mantissa.trailing_zeros() as i32;
+    places == decimals + 1
 }
