@@ -1,14 +1,15 @@
 //! An example: a camera in four lines, `size W H`, `focal FX FY`, `centre CX CY`, `distortion K1 K2 P1 P2`.
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::Target;
 
 use super::PLAIN;
-use crate::camera::brown::{Brown, positive};
-use crate::camera::fit::{Keeps, Model};
-use crate::camera::number::{numbers, pixels, shortest};
-use crate::camera::source::Source;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::brown::{Brown, positive};
+use crate::format::{Keeps, Model};
+use crate::number::{numbers, pixels, shortest};
+use crate::source::Source;
+use crate::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "four-lines",

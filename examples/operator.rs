@@ -3,7 +3,7 @@
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
 use crate::operator::{Operator, window_centre};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 
 /// Centroid of the window's pixels, weighted by the squared gradient of the grey values.
@@ -16,13 +16,7 @@ pub struct EdgeCentroid {
     half: i64,
 }
 
-const PARAMETERS: &[Parameter] = &[Parameter {
-    name: "window",
-    about: "side of the window, px",
-    domain: Domain::Odd { min: 3, max: 31 },
-    default: 21.0,
-    always_shown: true,
-}];
+const PARAMETERS: &[Parameter] = &[Parameter::odd("window", "side of the window, px", [3, 31], 21.0).always_shown()];
 
 /// The method's entry.
 pub fn method() -> Method {

@@ -4,7 +4,7 @@
 use std::process::ExitCode;
 
 use calibench_cli::Toolbox;
-use calibench_measure::parameter::{Domain, Parameter};
+use calibench_measure::parameter::Parameter;
 use calibench_measure::registry::{Build, Method, Registry};
 use calibench_measure::{Operator, Settings};
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
@@ -14,13 +14,7 @@ struct Shifted {
     shift: f64,
 }
 
-const PARAMETERS: &[Parameter] = &[Parameter {
-    name: "shift",
-    about: "what is added to x, px",
-    domain: Domain::Real { min: -1.0, max: 1.0 },
-    default: 0.0,
-    always_shown: false,
-}];
+const PARAMETERS: &[Parameter] = &[Parameter::real("shift", "what is added to x, px", [-1.0, 1.0], 0.0)];
 
 /// Raise `version` whenever results change: the gate names a new version.
 fn shifted() -> Method {

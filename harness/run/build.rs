@@ -13,7 +13,21 @@ use code::{compiler, digest, sources};
 use operators::{OPERATORS, Sources, of_modules, parted};
 
 /// Crates on which points depend.
-const POINTS: [&str; 10] = ["model", "random", "synth", "measure", "recognise", "detect", "exchange", "photographs", "scenario", "run"];
+const POINTS: [&str; 13] = [
+    "model",
+    "random",
+    "synth",
+    "measure",
+    "recognise",
+    "detect",
+    "files",
+    "images",
+    "cameras",
+    "exchange",
+    "photographs",
+    "scenario",
+    "run",
+];
 /// Crates on which adjustments depend beside them. Records define what is handed on.
 const ADJUSTED: [&str; 3] = ["adjust", "calibrate", "records"];
 /// Crates on which what is written beside them depends.

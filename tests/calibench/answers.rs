@@ -143,7 +143,7 @@ fn cameras_are_told_compared_and_converted() {
     let folder = wall();
     let here = folder.path();
     let shown = answer(&run(here, &["camera", "wall/camera.toml", "--json"]));
-    let truth = calibench_exchange::read_camera(&here.join("wall/camera.toml")).unwrap().cameras.remove(0);
+    let truth = calibench_cameras::read_camera(&here.join("wall/camera.toml")).unwrap().cameras.remove(0);
     let values: Vec<f64> = calibench_model::camera::CameraModel::parameters(&truth.camera).iter().map(|p| p.value).collect();
     let told = |camera: &Value| list(&camera["parameters"]).iter().map(|p| p["value"].as_f64().unwrap()).collect::<Vec<_>>();
     assert_eq!(told(&shown["camera"]), values);

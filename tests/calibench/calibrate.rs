@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use calibench_exchange::camera::NamedCamera;
-use calibench_exchange::{StationRow, read_camera, read_control, read_stations};
+use calibench_cameras::read_camera;
+use calibench_exchange::{read_control, read_stations};
 use calibench_model::camera::CameraModel;
+use calibench_model::{NamedCamera, StationRow};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::project::{root, run, stderr, stdout};

@@ -187,7 +187,7 @@ fn conventions_are_listed_with_what_is_verified() {
 #[test]
 fn formats_are_listed_with_what_convert_can_be_told() {
     let text = good(&root(), &["list", "formats"]);
-    for format in calibench_exchange::camera::FORMATS {
+    for format in calibench_cameras::FORMATS {
         assert!(text.contains(&format!("  {} (.{}): {}", format.name, format.extension, format.tool)), "{}: {text}", format.name);
     }
     assert!(

@@ -114,7 +114,7 @@ fn a_rotated_fit_turns_the_pose_as_well() {
 #[test]
 fn the_docs_name_every_format_of_a_tool() {
     let page = std::fs::read_to_string(root().join("docs/cameras-and-conventions.md")).unwrap();
-    for format in calibench_exchange::camera::FORMATS {
+    for format in calibench_cameras::FORMATS {
         assert!(
             page.contains(&format!("`{}`", format.name)) || format.models(None).is_empty(),
             "{} has no row in docs/cameras-and-conventions.md",

@@ -72,7 +72,7 @@ fn a_large_board_is_shown_in_time() {
     write(folder.path(), "mine.toml", &text.replace("rows = 4", "rows = 1000").replace("square = 25", "square = 0.2"));
     let output = in_time(folder.path(), &["show", "mine.toml", "-o", "board.png"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    assert!(calibench_exchange::read_photo(&folder.path().join("board.png")).is_ok());
+    assert!(calibench_images::read_photo(&folder.path().join("board.png")).is_ok());
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn names_command_neither_the_terminal_nor_a_spreadsheet() {
     assert_eq!(output.status.code(), Some(2));
     let words = stderr(&output);
     assert!(words.contains("p.csv:3") && words.contains("a\\u{1b}[2J.png") && !words.contains('\u{1b}'), "{words}");
-    calibench_exchange::write_png(&folder.path().join("a.png"), &calibench_model::Image::from_fn(40, 40, |x, _| (x % 2) as f32), false)
+    calibench_images::write_png(&folder.path().join("a.png"), &calibench_model::Image::from_fn(40, 40, |x, _| (x % 2) as f32), false)
         .unwrap();
     write(folder.path(), "p.csv", "image,target,x,y\na.png,=1+2,20,20\n");
     let output = run(folder.path(), &["measure", "a.png", "--points", "p.csv", "-o", "out.csv"]);

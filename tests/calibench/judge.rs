@@ -117,7 +117,7 @@ fn mistakes_are_named() {
     refused(&[images.clone(), images[..1].to_vec()].concat(), &[], "given twice");
     let noise = calibench_model::Image::from_fn(640, 480, |x, y| ((x * 7919 + y * 104_729) % 251) as f32 / 250.0);
     let blank: Vec<String> = (0..6).map(|i| format!("blank{i}.png")).collect();
-    blank.iter().for_each(|name| calibench_exchange::write_png(&folder.path().join(name), &noise, false).unwrap());
+    blank.iter().for_each(|name| calibench_images::write_png(&folder.path().join(name), &noise, false).unwrap());
     refused(&blank, &["-m", "pixel"], "found 0");
 }
 

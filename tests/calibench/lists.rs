@@ -155,7 +155,7 @@ fn lists_beyond_the_limit_of_other_files_are_converted() {
     let points = "1.25 2.5 -1 ".repeat(2_000_000);
     let image = |i: usize| format!("{i} 1 0 0 0 0 0 {i} {i} {i}.jpg\n{points}\n");
     fs::write(folder.path().join("images.txt"), (1..=3).map(image).collect::<String>()).unwrap();
-    assert!(fs::metadata(folder.path().join("images.txt")).unwrap().len() > calibench_exchange::camera::LARGEST_FILE);
+    assert!(fs::metadata(folder.path().join("images.txt")).unwrap().len() > calibench_cameras::LARGEST_FILE);
     let output = convert(folder.path(), "images.txt", "colmap", "images-cameras.txt");
     good(&output);
     assert!(stderr(&output).contains("warning: lost: the pose: colmap has no place for it (3 cameras)"), "{}", stderr(&output));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::write_png;
+use calibench_images::write_png;
 use calibench_model::{Image, PixelPoint, Polygon, Scene};
 use calibench_synth::render;
 

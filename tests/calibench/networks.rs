@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::{DatumChoice, Optics, Settings, prepare};
-use calibench_exchange::{ControlRow, PointRow, Points};
-use calibench_model::Start;
 use calibench_model::camera::CameraModel;
+use calibench_model::{ControlRow, PointRow, Points, Start};
 use calibench_random::Key;
 use calibench_records::figures::Group;
 use calibench_records::results::Trial;

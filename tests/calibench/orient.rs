@@ -108,7 +108,7 @@ fn pairs_without_an_orientation_are_named() {
 fn a_plane_is_said_to_be_critical() {
     let folder = wall();
     let (mut points, mut control) = (String::from("image,target,x,y\n"), String::new());
-    let camera = calibench_exchange::read_camera(&folder.path().join("wall/camera.toml")).unwrap().cameras.remove(0).camera;
+    let camera = calibench_cameras::read_camera(&folder.path().join("wall/camera.toml")).unwrap().cameras.remove(0).camera;
     let stations = read_stations(&folder.path().join("wall/stations.csv")).unwrap();
     let known = read_control(&folder.path().join("wall/control.csv")).unwrap();
     // The plane through three of the targets.

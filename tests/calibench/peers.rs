@@ -6,15 +6,15 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use calibench_exchange::camera::conversion::converted;
-use calibench_exchange::camera::target::{Given, goal};
-use calibench_exchange::camera::{NamedCamera, read_camera, write_camera};
-use calibench_exchange::st_map::{Direction, MapFile, Overscan, StMap, Undistorted, encode};
-use calibench_model::PixelPoint;
+use calibench_cameras::conversion::converted;
+use calibench_cameras::target::{Given, goal};
+use calibench_cameras::{read_camera, write_camera};
+use calibench_images::st_map::{Direction, MapFile, Overscan, StMap, Undistorted, encode};
 use calibench_model::camera::{
     Camera, CameraModel, Eucm, Fov, ImageSize, Omni, OpenCv, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
 };
 use calibench_model::convert::{ConvertOptions, Method};
+use calibench_model::{NamedCamera, PixelPoint};
 
 use crate::project::root;
 
@@ -173,7 +173,7 @@ fn an_st_map_is_opencv_s_map() {
     let (map, file) = (folder.path().join("map.tif"), folder.path().join("camera.yml"));
     for coefficients in [4, 5, 8, 12, 14] {
         let camera = opencv(coefficients);
-        write_camera(&file, calibench_exchange::camera::format_named("opencv-yaml").unwrap(), &[NamedCamera::new("", camera)]).unwrap();
+        write_camera(&file, calibench_cameras::format_named("opencv-yaml").unwrap(), &[NamedCamera::new("", camera)]).unwrap();
         // OpenCV's picture has its camera matrix, ours the scale on the axis: another one where the sensor is tilted.
         let (on_axis, principal) = (Undistorted::of(&camera, Overscan::Percent(0.0)).unwrap(), PixelPoint::new(610.0, 440.0));
         let picture = Undistorted { focal: [1400.0, 1403.0], principal, ..on_axis };

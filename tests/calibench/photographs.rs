@@ -84,7 +84,7 @@ fn without_photographs_the_scenario_is_unavailable_visibly() {
 fn a_photograph_without_a_board_is_said_to_have_none() {
     let folder = tempfile::tempdir().unwrap();
     let noise = calibench_model::Image::from_fn(320, 240, |x, y| ((x * 7919 + y * 104_729) % 251) as f32 / 250.0);
-    calibench_exchange::write_png(&folder.path().join("noise.png"), &noise, false).unwrap();
+    calibench_images::write_png(&folder.path().join("noise.png"), &noise, false).unwrap();
     let output = run(folder.path(), &["detect", "noise.png", "--chessboard", "9x6"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("noise.png: no board of 9 x 6 inner corners found"), "{}", stderr(&output));

@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use calibench_exchange::write_png;
+use calibench_images::write_png;
 use calibench_model::Image;
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;

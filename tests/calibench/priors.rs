@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::NamedCamera;
+use calibench_model::NamedCamera;
 use calibench_model::camera::CameraModel;
 
 use crate::calibrate::{WALL, number, one, table, wall, write};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::{encode_png, read_photo};
+use calibench_images::{encode_png, read_photo};
 use image::ImageEncoder;
 
 use crate::judge::{board, judge};

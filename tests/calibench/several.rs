@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::read_camera;
+use calibench_cameras::read_camera;
 use calibench_model::camera::CameraModel;
 
 use crate::calibrate::{WALL, number, one, table, wall, write};

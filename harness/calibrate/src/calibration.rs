@@ -3,9 +3,9 @@
 use calibench_adjust::{
     Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, adjust_robustly, snoop,
 };
-use calibench_exchange::NamedCamera;
-use calibench_exchange::camera::ParameterCovariance;
+use calibench_model::NamedCamera;
 use calibench_model::camera::Camera;
+use calibench_model::named_camera::ParameterCovariance;
 
 use crate::ended::{ITERATIONS, ended};
 use crate::{CalibrationError, Checked, Compared, Doubt, OverFrame, Prepared, Resampled};

@@ -1,8 +1,8 @@
 //! From points and control to a network with start values.
 
 use calibench_adjust::Network;
-use calibench_exchange::{ControlRow, LostRows, Points};
 use calibench_model::camera::Camera;
+use calibench_model::{ControlRow, LostRows, Points};
 
 use crate::against_gross::{self, Found};
 use crate::{BoardShape, CalibrationError, DatumChoice, Eccentricity, LeftOut, Rival, Settings, Shape, Survey, network, optics, shape};

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use calibench_adjust::{Attitude, Centre, Exterior, Interior};
 use calibench_diagnostics::nearest;
-use calibench_exchange::ObservedStation;
+use calibench_model::ObservedStation;
 use thiserror::Error;
 
 use super::CalibrationError;

@@ -2,6 +2,7 @@
 
 use calibench_adjust::{Exterior, ImageObservation, Network, Options, adjust};
 use calibench_model::camera::CameraModel;
+use calibench_model::upper_median;
 use rayon::prelude::*;
 
 /// Groups of images at most: a standard deviation from so many is known to a sixth.
@@ -41,10 +42,7 @@ impl Resampled {
 
     /// The median of their ratio to `formal` standard deviations, a number: 1 if residuals are as independent as the adjustment takes them.
     pub fn ratio(&self, formal: impl IntoIterator<Item = f64>) -> Option<f64> {
-        let mut ratios: Vec<f64> =
-            self.sigmas.iter().zip(formal).filter(|(_, formal)| *formal > 0.0).map(|(own, formal)| own / formal).collect();
-        ratios.sort_by(f64::total_cmp);
-        ratios.get(ratios.len() / 2).copied()
+        upper_median(self.sigmas.iter().zip(formal).filter(|(_, formal)| *formal > 0.0).map(|(own, formal)| own / formal))
     }
 
     /// Of a network that starts at its minimum, and of the unknown parameters `names` (camera, name).

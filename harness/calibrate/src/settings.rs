@@ -1,7 +1,7 @@
 //! How to calibrate.
 
 use calibench_adjust::Variance;
-use calibench_exchange::ObservedStation;
+use calibench_model::ObservedStation;
 
 use crate::{BoardShape, DatumChoice, Discs, Optics};
 

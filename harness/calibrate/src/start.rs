@@ -4,8 +4,8 @@ use calibench_adjust::approximate::{
     Assumed, Control, Search, Shape, Sight as Ray, Tolerance, direct_linear, interior_from_planes, interior_from_size, intersect,
     planar_poses, resect,
 };
-use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye};
+use calibench_model::{Pose, upper_median};
 use nalgebra::Point3;
 use rayon::prelude::*;
 
@@ -156,9 +156,8 @@ fn from_depth(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String),
     let mut linear: Vec<f64> =
         some.par_iter().filter_map(|view| direct_linear(view, size, 1000.0, None).ok()).map(|dlt| dlt.camera.c).collect();
     linear.retain(|f| *f > 0.2 * side && *f < 20.0 * side);
-    linear.sort_by(f64::total_cmp);
-    if let Some(median) = linear.get(linear.len() / 2) {
-        focal.push((*median, "the direct linear transformation (median of the images)"));
+    if let Some(median) = upper_median(linear) {
+        focal.push((median, "the direct linear transformation (median of the images)"));
     }
     let few = few(&some);
     let tried = focal.into_iter().map(|(focal, origin)| {
@@ -185,9 +184,8 @@ fn few(views: &[&[Control]]) -> Vec<Vec<Control>> {
 /// The median over the images of the standard deviation of an image coordinate after a resection, px.
 fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
     let sigma = |view: &Vec<Control>| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
-    let mut sigmas: Vec<f64> = views.par_iter().filter(|view| view.len() >= 4).map(sigma).collect();
-    sigmas.sort_by(f64::total_cmp);
-    sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
+    let sigmas: Vec<f64> = views.par_iter().filter(|view| view.len() >= 4).map(sigma).collect();
+    upper_median(sigmas).unwrap_or(f64::INFINITY)
 }
 
 /// `usual`, or a lens that pictures angles if one suits the images better.

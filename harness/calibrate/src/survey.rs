@@ -1,10 +1,10 @@
 //! Measured points and control, joined by name.
 
 use calibench_diagnostics::nearest;
+use calibench_model::points::Groups;
+use calibench_model::{ControlDisc, ControlRow, Covariance, PixelPoint, Points, TargetKind};
 use std::collections::HashMap;
 
-use calibench_exchange::{ControlDisc, ControlRow, Groups, Points};
-use calibench_model::{Covariance, PixelPoint, TargetKind};
 use nalgebra::Point3;
 
 use super::CalibrationError;

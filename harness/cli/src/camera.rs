@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::NamedCamera;
 use calibench_model::camera::CameraModel;
-use calibench_model::escape;
+use calibench_model::{NamedCamera, escape};
 use calibench_report::camera_card;
-use calibench_report::json::CameraFileAnswer;
+use calibench_report::json::{CameraFileAnswer, CameraFileFormat};
 use clap::Args;
 
 use super::reading::Reading;
@@ -31,7 +30,13 @@ impl CameraCommand {
         let camera = self.reading.one_of(&self.file, opened)?;
         let doubt = || if camera.implausible { Err(Failure::Doubt) } else { Ok(()) };
         if self.answered.json {
-            answer(&CameraFileAnswer::new(&self.file.display().to_string(), &file, &camera))?;
+            let format = CameraFileFormat {
+                name: format.name.into(),
+                tool: format.tool.into(),
+                versions: format.versions.into(),
+                verified: format.verified.map(str::to_owned),
+            };
+            answer(&CameraFileAnswer::new(&self.file.display().to_string(), format, &file.cameras, &camera))?;
             return doubt();
         }
         let verified = format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}"));

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::OutputFile;
+use calibench_files::OutputFile;
 use calibench_gate::{
     Access, Baselines, CEILINGS, Ceilings, Cells, Check as Gate, FigureSums, ImageSums, Kept, Results, Rules, Table, json, junit,
     not_tested, recorded, render,

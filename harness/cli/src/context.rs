@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use calibench_exchange::Inputs;
+use calibench_files::Inputs;
 use calibench_measure::{Configured, Registry};
 use calibench_model::TargetKind;
 use calibench_model::boards::Board;
@@ -16,8 +16,8 @@ use calibench_scenario::catalogue::Catalogue;
 
 pub use calibench_project::{Pictured, origin};
 
+use crate::confined::CONFINED;
 use crate::failure::{Failure, project_failure};
-use crate::plugin::CONFINED;
 
 /// What every command gets.
 pub struct Context<'a> {

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, write_control};
+use calibench_exchange::write_control;
+use calibench_files::Inputs;
 use calibench_model::boards::Board;
-use calibench_photographs::board_of;
 use clap::Args;
 
 use super::context::finder;
 use super::output;
+use crate::board::board_of;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 

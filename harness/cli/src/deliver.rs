@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, ErrorKind, Write, stdout};
 
-use calibench_exchange::OutputFile;
+use calibench_files::OutputFile;
 use calibench_model::escape;
 use calibench_report::json::{Answer, write_answer};
 use clap::Args;

@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, PointRef, PointRow, write_points};
+use calibench_cameras::inputs_of;
+use calibench_exchange::write_points;
 use calibench_measure::Board as Counts;
 use calibench_model::boards::Board;
+use calibench_model::{PointRef, PointRow};
+use calibench_photographs::Chessboard;
 use calibench_photographs::coded::{Coded, recognise_coded};
 use calibench_photographs::names::once;
-use calibench_photographs::{Chessboard, board_of};
 use calibench_recognise::{Classifier, NotRecognised, Recogniser};
 use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject, ViewsSubject};
@@ -17,6 +19,7 @@ use super::context::{Context, finder};
 use super::output;
 use super::photos::AsRead;
 use super::progress::Progress;
+use crate::board::board_of;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 
@@ -65,7 +68,7 @@ impl Detect {
     }
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
-        let output = output::table("-o", self.output.as_deref(), &Inputs::new(&self.photos))?;
+        let output = output::table("-o", self.output.as_deref(), &inputs_of(&self.photos))?;
         let finder = finder(board)?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
@@ -90,7 +93,7 @@ impl Detect {
     fn field(&self, context: &Context<'_>, name: &str) -> Result<(), Failure> {
         let scenario = context.scenario(name)?;
         let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
-        let read = Inputs::new(self.photos.iter().cloned().chain(file));
+        let read = inputs_of(self.photos.iter().cloned().chain(file));
         let output = output::table("-o", self.output.as_deref(), &read)?;
         let subject = views(&scenario)?;
         let classifier = match self.classifier {

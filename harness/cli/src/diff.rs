@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::Inputs;
+use calibench_cameras::inputs_of;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::{Difference, DifferenceOptions, Vector, difference, difference_at};
@@ -46,7 +46,7 @@ pub struct Diff {
 
 impl Diff {
     pub fn run(&self) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.first, &self.second].into_iter().chain(&self.points));
+        let inputs = inputs_of([&self.first, &self.second].into_iter().chain(&self.points));
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let camera = |path: &Path| {
             let named = self.reading.one(path)?;

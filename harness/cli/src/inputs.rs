@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::CameraList;
+use calibench_cameras::{CameraList, ReadOptions, read_camera_with};
+use calibench_exchange::PointFile;
 use calibench_exchange::points::{Check, read_points_checked};
-use calibench_exchange::{PointFile, Points, ReadOptions, read_camera_with};
+use calibench_model::Points;
 use calibench_model::camera::{Camera, ImageSize};
 
 use crate::failure::Failure;

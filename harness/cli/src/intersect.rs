@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::Survey;
-use calibench_calibrate::orientation::{ObjectPoints, poses_of};
-use calibench_exchange::{Inputs, read_stations};
+use calibench_calibrate::orientation::{ObjectPoints, StatedPrecision, poses_of};
+use calibench_cameras::inputs_of;
+use calibench_exchange::read_stations;
 use calibench_report::plain;
 use clap::Args;
 
@@ -41,7 +42,7 @@ pub struct Intersect {
 
 impl Intersect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.points, &self.stations].into_iter().chain(self.cameras.paths()));
+        let inputs = inputs_of([&self.points, &self.stations].into_iter().chain(self.cameras.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let survey = Survey::without_control(read_measured(&self.points)?);
         let cameras = self.cameras.of(&survey.images)?;
@@ -49,7 +50,8 @@ impl Intersect {
         for (image, _) in survey.images.iter().zip(&poses).filter(|(_, pose)| pose.is_none()) {
             say!("image {image}: has no station; its points are left out");
         }
-        let points = ObjectPoints::of(&survey, &cameras, &poses, self.least_angle.to_radians(), (self.tolerance, self.sigma));
+        let stated = StatedPrecision { tolerance_px: self.tolerance, sigma_px: self.sigma };
+        let points = ObjectPoints::of(&survey, &cameras, &poses, self.least_angle.to_radians(), stated);
         points.first_failures.iter().for_each(|(target, error)| say!("target {}: {error}", survey.target(*target)));
         let untold = points.failed - points.first_failures.len();
         if untold > 0 {

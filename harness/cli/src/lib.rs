@@ -7,10 +7,12 @@
 mod say;
 
 mod bless;
+mod board;
 mod calibrate;
 mod camera;
 mod camera_files;
 mod check;
+mod confined;
 mod context;
 mod control;
 mod convert;
@@ -58,8 +60,8 @@ use std::process::ExitCode;
 
 pub use calibench_project::Toolbox;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use confined::CONFINED;
 use failure::Failure;
-use plugin::CONFINED;
 
 /// Compares camera calibration methods on images whose truth is known exactly, and on photographs.
 #[derive(Parser)]
@@ -145,7 +147,7 @@ enum Command {
     Plugin(plugin::PluginCommand),
     /// Restrict this process, then become another program: how plug-ins are started
     #[command(name = CONFINED, hide = true)]
-    Confined(plugin::Confined),
+    Confined(confined::Confined),
     /// Print the JSON Schema of scenario files or of published tables, for editors, or of what a command answers with --json
     Schema {
         /// Of what

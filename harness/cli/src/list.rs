@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use calibench_exchange::camera::FORMATS;
-use calibench_exchange::camera::target::TARGETS;
+use calibench_cameras::FORMATS;
+use calibench_cameras::target::TARGETS;
 use calibench_measure::registry::Build;
 use calibench_model::camera::{Convention, Verification};
 use calibench_records::figures::{Better, Group, Quantity};

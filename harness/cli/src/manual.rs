@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::Inputs;
+use calibench_files::Inputs;
 use clap::{Args, Command};
 use clap_complete::Shell;
 

@@ -3,9 +3,9 @@
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::camera::FORMATS;
-use calibench_exchange::st_map::MapFile;
-use calibench_exchange::{Inputs, OutputFile, OutputFolder};
+use calibench_cameras::FORMATS;
+use calibench_files::{Inputs, OutputFile, OutputFolder};
+use calibench_images::st_map::MapFile;
 
 use crate::failure::Failure;
 

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{Inputs, OutputFile};
+use calibench_cameras::inputs_of;
+use calibench_files::{Inputs, OutputFile};
 use calibench_report::sweep;
 use calibench_report::sweep::{Choice, Layout, LoadedSweep, Metric};
 use clap::Args;
@@ -64,7 +65,7 @@ pub fn pair(text: &str) -> Result<(String, String), String> {
 impl Plot {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let (loaded, records) = self.load(context)?;
-        let (path, picture, numbers) = self.outputs(&loaded, &Inputs::new([records]))?;
+        let (path, picture, numbers) = self.outputs(&loaded, &inputs_of([records]))?;
         let choice = Choice {
             x: self.x.clone(),
             by: Some(self.map.clone().unwrap_or_else(|| self.by.clone())),

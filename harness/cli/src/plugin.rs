@@ -1,22 +1,16 @@
-//! `calibench plugin`: trying a program of one's own; and how plug-ins are started.
+//! `calibench plugin`: trying a program of one's own.
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use calibench_measure::{Configured, Registry};
-use calibench_plugins::{
-    Confinement, Declaration, Declared, Finding, Launcher, Recording, Starts, check, confine_and_execute, method, parse,
-};
+use calibench_plugins::{Declaration, Declared, Finding, Launcher, Recording, Starts, check, method, parse};
 use calibench_project::ProjectError;
 use calibench_run::origin::{DIRECTIONS, Origin, check_origins, origins};
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 
 use super::context::Context;
 use crate::deliver::print;
 use crate::failure::{Failure, project_failure};
-
-/// The command by which plug-ins are started.
-pub const CONFINED: &str = "confined";
 
 #[derive(Subcommand)]
 pub enum PluginCommand {
@@ -35,10 +29,9 @@ impl PluginCommand {
 }
 
 fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
-    let text = calibench_exchange::bounded::text(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    let text = calibench_files::bounded::text(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
     let declared = parse(&file.display().to_string(), &text).map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
-    let folder =
-        file.canonicalize().map_err(|error| calibench_exchange::at(file, &error))?.parent().map(Path::to_owned).unwrap_or_default();
+    let folder = file.canonicalize().map_err(|error| calibench_files::at(file, &error))?.parent().map(Path::to_owned).unwrap_or_default();
     let launcher = context.launcher()?;
     let mut failed = false;
     for declared in declared {
@@ -111,40 +104,4 @@ fn say_finding(what: &str, wrong: Option<&str>) -> Result<(), Failure> {
         None => format!("  ok      {what}\n"),
         Some(wrong) => format!("  FAILED  {what}: {wrong}\n"),
     })
-}
-
-/// The restrictions of a plug-in, and its command.
-#[derive(Args)]
-pub struct Confined {
-    /// The folder that it may write in
-    #[arg(long)]
-    scratch: PathBuf,
-    /// The folder that it may not read
-    #[arg(long)]
-    closed: Option<PathBuf>,
-    /// What it may read below that folder
-    #[arg(long)]
-    open: Vec<PathBuf>,
-    /// Memory, bytes
-    #[arg(long)]
-    memory: u64,
-    /// The program and its arguments
-    #[arg(last = true, required = true)]
-    command: Vec<OsString>,
-}
-
-impl Confined {
-    /// Returns only where it cannot.
-    pub fn execute(&self) -> u8 {
-        let Self { scratch, closed, open, memory, command } = self;
-        let confinement = Confinement { scratch: scratch.clone(), closed: closed.clone(), open: open.clone(), memory: *memory };
-        let error = confine_and_execute(&confinement, command);
-        say!("{}: {error}", command[0].display());
-        2
-    }
-
-    /// It is executed before anything else.
-    pub fn failure(&self) -> Failure {
-        Failure::input(format!("{}: not started", self.command[0].display()))
-    }
 }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::kalibr_target;
-use calibench_exchange::print::{Paper, PrintError, PrintOptions, write_sheets};
+use calibench_cameras::kalibr_target;
+use calibench_prints::{Paper, PrintError, PrintOptions, write_sheets};
 use calibench_scenario::Subject;
 use clap::{Args, ValueEnum};
 

@@ -3,13 +3,11 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use calibench_cameras::open_points::{self, OpenPoints};
+use calibench_cameras::{CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, ReadOptions, format_named, read_camera_with};
 use calibench_diagnostics::nearest;
-use calibench_exchange::camera::open_points::{self, OpenPoints};
-use calibench_exchange::camera::{
-    self, CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with,
-};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
-use calibench_model::escape;
+use calibench_model::{NamedCamera, escape};
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
@@ -112,8 +110,8 @@ impl Reading {
 
     fn options(&self) -> ReadOptions {
         let lens = self.lens.map(|lens| match lens {
-            Lens::Brown => camera::Lens::Brown,
-            Lens::Division => camera::Lens::Division,
+            Lens::Brown => calibench_cameras::Lens::Brown,
+            Lens::Division => calibench_cameras::Lens::Division,
         });
         ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from, ignore: self.ignore.clone() }
     }

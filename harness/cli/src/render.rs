@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Fingerprint, NewFolder, Points, RENDERED, RenderedImage, encode_png, write_rendered};
+use calibench_exchange::{Fingerprint, RENDERED, RenderedImage, write_rendered};
+use calibench_files::NewFolder;
+use calibench_images::encode_png;
 use calibench_model::camera::CameraModel;
-use calibench_model::{Image, Start};
+use calibench_model::{Image, Points, Start};
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
 use calibench_run::views::{self, Prepared, PreparedView};

@@ -29,8 +29,8 @@ impl Report {
             let pages = |(family, scenarios): &(&String, &Vec<String>)| family_pages(&places, family, scenarios);
             let pages: Vec<FamilyPages> = side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), pages)?;
             let folder = places.reports.join("html");
-            std::fs::create_dir_all(&folder).map_err(|error| calibench_exchange::at(&folder, &error))?;
-            calibench_exchange::folder::write_beside(&folder, ONE_FILE, one_file(&pages).as_bytes())?;
+            std::fs::create_dir_all(&folder).map_err(|error| calibench_files::at(&folder, &error))?;
+            calibench_files::folder::write_beside(&folder, ONE_FILE, one_file(&pages).as_bytes())?;
             if !context.quiet {
                 say!("{}", folder.join(ONE_FILE).display());
             }

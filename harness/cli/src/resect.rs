@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::orientation::{Orientations, resect_images};
+use calibench_calibrate::orientation::{Orientations, StatedPrecision, resect_images};
 use calibench_calibrate::{Survey, few};
-use calibench_exchange::{Inputs, read_control};
+use calibench_cameras::inputs_of;
+use calibench_exchange::read_control;
 use calibench_report::plain;
 use clap::Args;
 
@@ -38,11 +39,11 @@ pub struct Resect {
 
 impl Resect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.points, &self.control].into_iter().chain(self.cameras.paths()));
+        let inputs = inputs_of([&self.points, &self.control].into_iter().chain(self.cameras.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let survey = Survey::new(read_measured(&self.points)?, &read_control(&self.control)?)?;
         let cameras = self.cameras.of(&survey.images)?;
-        let found = resect_images(&survey, &cameras, (self.tolerance, self.sigma));
+        let found = resect_images(&survey, &cameras, StatedPrecision { tolerance_px: self.tolerance, sigma_px: self.sigma });
         let failed: Vec<String> = found.failed.iter().map(|(image, error)| format!("image {}: {error}", survey.images[*image])).collect();
         failed.iter().for_each(|failed| say!("{failed}"));
         if found.found.is_empty() {

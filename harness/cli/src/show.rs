@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use calibench_exchange::read_photo;
+use calibench_images::read_photo;
 use calibench_measure::registry::KINDS;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, PixelPoint, TargetKind};

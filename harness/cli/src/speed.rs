@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use calibench_exchange::Inputs;
-use calibench_measure::kinds::all_busy;
+use calibench_cameras::inputs_of;
+use calibench_measure::coverage::all_busy;
 use calibench_measure::{Configured, Operator, Sought};
 use calibench_model::{Image, Start};
 use calibench_report::speeds::{SPEEDS, Speed, Speeds};
@@ -54,7 +54,7 @@ impl SpeedCommand {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let names: Vec<&str> = if self.scenarios.is_empty() { USUAL.to_vec() } else { self.scenarios.iter().map(String::as_str).collect() };
         let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
-        let inputs = Inputs::new(self.scenarios.iter().filter(|name| is_toml(name.as_ref())));
+        let inputs = inputs_of(self.scenarios.iter().filter(|name| is_toml(name.as_ref())));
         let path = self.output.clone().map_or_else(|| Ok::<_, Failure>(context.root()?.join(SPEEDS)), Ok)?;
         let output = output::table("-o", Some(&path), &inputs)?;
         let methods = context.methods(&self.methods, Pictured::Renders)?;

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::Inputs;
-use calibench_exchange::camera::NamedCamera;
-use calibench_exchange::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
-use calibench_model::PixelPoint;
+use calibench_cameras::inputs_of;
+use calibench_images::st_map::{Check, Direction, MapFile, Overscan, Pinhole, StMap, Undistorted, check, encode};
 use calibench_model::camera::ImageSize;
+use calibench_model::{NamedCamera, PixelPoint};
 use calibench_report::plain;
 use clap::Args;
 
@@ -44,7 +43,7 @@ pub struct StMapCommand {
 
 impl StMapCommand {
     pub fn run(&self) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.file].into_iter().chain(&self.check));
+        let inputs = inputs_of([&self.file].into_iter().chain(&self.check));
         let output = self.output.as_deref().map(|path| output::map("-o", path, &inputs)).transpose()?;
         let kind = output.as_ref().map(|output| {
             // What is no regular file has any ending.

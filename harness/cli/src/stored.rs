@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use calibench_exchange::folder::digest;
+use calibench_files::folder::digest;
 use calibench_run::reuse::{Reuse, Tally, is_code_known};
 use calibench_store::Store;
 use clap::Args;

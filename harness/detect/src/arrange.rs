@@ -1,5 +1,7 @@
 //! Whether marks stand to each other as the board has them.
 
+use calibench_model::upper_median;
+
 use crate::NotFound;
 use crate::plane::{Homography, Linear, Point, cross, distance, dot, minus, plus, times};
 
@@ -129,7 +131,9 @@ fn spacing(pairs: &[Pair]) -> Result<(), NotFound> {
     let least = pairs.iter().map(|pair| pair.apart).fold(f64::INFINITY, f64::min);
     let near = || pairs.iter().filter(|pair| pair.apart < 1.7 * least);
     let aligned: Vec<&Pair> = near().filter(|pair| pair.across.abs() < ACROSS * pair.along).collect();
-    let (Some(along), Some(size)) = (median(aligned.iter().map(|pair| pair.along)), median(aligned.iter().map(|pair| pair.size))) else {
+    let (Some(along), Some(size)) =
+        (upper_median(aligned.iter().map(|pair| pair.along)), upper_median(aligned.iter().map(|pair| pair.size)))
+    else {
         return Ok(());
     };
     let alike = aligned.iter().filter(|pair| (pair.along / along - 1.0).abs() < 0.12).count();
@@ -138,12 +142,6 @@ fn spacing(pairs: &[Pair]) -> Result<(), NotFound> {
         return Err(NotFound::OtherSpacing { times: 1.0 / along });
     }
     Ok(())
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut all: Vec<f64> = values.collect();
-    all.sort_unstable_by(f64::total_cmp);
-    all.get(all.len() / 2).copied()
 }
 
 /// The marks outside the group that stand where a homography of the group has them.

@@ -1,6 +1,6 @@
 //! Convex quadrangles around dark areas.
 
-use calibench_model::{Image, stop};
+use calibench_model::{Image, stop, upper_median};
 
 use crate::ground::grey;
 use crate::patches::Run;
@@ -145,9 +145,7 @@ fn side(image: &Image, a: Point, b: Point, reach: f64, seen: f64) -> Option<Line
         })
         .collect();
     // What rises much less is no edge of the same dark and light.
-    let mut rises: Vec<f64> = edges.iter().map(|(_, rise)| *rise).collect();
-    rises.sort_unstable_by(f64::total_cmp);
-    let least = 0.3 * rises.get(rises.len() / 2)?;
+    let least = 0.3 * upper_median(edges.iter().map(|(_, rise)| *rise))?;
     let found: Vec<Point> = edges.iter().filter(|(_, rise)| *rise >= least).map(|(at, _)| *at).collect();
     trimmed(&found, (seen * count as f64).max(5.0) as usize, (0.45 * reach).max(0.9))
 }
@@ -178,10 +176,7 @@ fn edge(image: &Image, at: Point, outwards: Point, reach: f64) -> Option<(f64, f
 fn trimmed(points: &[Point], least: usize, most: f64) -> Option<Line> {
     let line = fitted(points, least)?;
     let off = |point: &Point| cross(line.along, minus(*point, line.at)).abs();
-    let mut offs: Vec<f64> = points.iter().map(off).collect();
-    let middle = offs.len() / 2;
-    let (_, median, _) = offs.select_nth_unstable_by(middle, f64::total_cmp);
-    let limit = (3.0 * *median).clamp(0.6, most);
+    let limit = (3.0 * upper_median(points.iter().map(off))?).clamp(0.6, most);
     let near: Vec<Point> = points.iter().filter(|point| off(point) <= limit).copied().collect();
     fitted(&near, least)
 }

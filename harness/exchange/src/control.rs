@@ -3,9 +3,11 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
+use calibench_files::write_table;
+use calibench_model::{ControlDisc, ControlRow};
+
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
-use crate::table::write_row;
 
 /// The columns of a table of intersected points beside those of a control file: how good each point is.
 pub const POINT_QUALITY_COLUMNS: [&str; 6] = ["images", "angle_deg", "sigma0_px", "redundancy", "rejected", "note"];
@@ -22,35 +24,6 @@ const FORM: Form = Form {
     others: false,
     passed_over: &POINT_QUALITY_COLUMNS,
 };
-
-/// A point of known object coordinates.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ControlRow {
-    /// The target's name.
-    pub target: String,
-    /// X, Y, Z, object units.
-    pub position: [f64; 3],
-    /// Standard deviations of X, Y, Z, object units; `None` where the file gives none.
-    pub sigmas: Option<[f64; 3]>,
-    /// Of a disc: boxed, as few targets say so.
-    pub disc: Option<Box<ControlDisc>>,
-}
-
-/// What is known of a target that is a disc.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ControlDisc {
-    /// Object units.
-    pub radius: f64,
-    /// A normal of its plane in the object's frame, either way and of any length but zero; `None` where the file gives none.
-    pub normal: Option<[f64; 3]>,
-}
-
-impl ControlRow {
-    /// A point of known coordinates, object units.
-    pub fn new(target: impl Into<String>, position: [f64; 3]) -> Self {
-        Self { target: target.into(), position, sigmas: None, disc: None }
-    }
-}
 
 /// Reads a control file: header `target,X,Y,Z`, optionally `sX,sY,sZ`, and of discs `radius` and `nX,nY,nZ`, in any order; rows may leave each of these groups
 /// empty. The columns that `intersect` writes beside them are passed over.
@@ -79,18 +52,17 @@ pub fn write_control<'a>(output: impl Write, rows: impl IntoIterator<Item = &'a 
     let any = |has: fn(&ControlRow) -> bool| rows.iter().any(|row| has(row));
     let has_normal = |row: &ControlRow| row.disc.as_ref().is_some_and(|disc| disc.normal.is_some());
     let there = [any(|row| row.sigmas.is_some()), any(|row| row.disc.is_some()), any(has_normal)];
-    let mut writer = csv::Writer::from_writer(output);
     let columns = FORM.optional.iter().zip(&there).filter(|(_, there)| **there).flat_map(|(group, _)| *group);
-    writer.write_record(std::iter::once(&FORM.key).chain(FORM.required).chain(columns))?;
-    for row in rows {
+    let columns: Vec<&str> = std::iter::once(&FORM.key).chain(FORM.required).chain(columns).copied().collect();
+    let cells = |row: &ControlRow| {
         let group = |(numbers, columns): (Option<Vec<f64>>, &&[&str])| {
             numbers.map_or_else(|| vec![String::new(); columns.len()], |numbers| numbers.iter().map(f64::to_string).collect())
         };
         let optional = groups(row).into_iter().zip(FORM.optional).zip(&there).filter(|(_, there)| **there).flat_map(|(it, _)| group(it));
         let numbers = row.position.iter().map(f64::to_string).chain(optional);
-        write_row(&mut writer, std::iter::once(row.target.clone()).chain(numbers))?;
-    }
-    writer.flush()
+        std::iter::once(row.target.clone()).chain(numbers).collect::<Vec<String>>()
+    };
+    write_table(output, &columns, rows.into_iter().map(cells))
 }
 
 /// The numbers of a row's optional groups.

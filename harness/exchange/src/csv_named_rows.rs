@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
+use calibench_files::bounded;
 use calibench_model::escape;
+use calibench_model::points::Names;
 use csv::StringRecord;
 
-use crate::bounded;
-use crate::points::{Names, PointFileError, as_a_whole, csv_error, line_of};
+use crate::points::{PointFileError, as_a_whole, csv_error, line_of};
 
 /// The columns of a kind of sheet.
 pub(crate) struct Form {

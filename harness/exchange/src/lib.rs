@@ -1,39 +1,19 @@
-//! Files of other tools: cameras, image coordinates, control, stations and photographs; testfields for the printer.
+//! Tables of other tools and of ours: image coordinates, control, stations, and the list of rendered images.
 
-pub mod atomic;
-pub mod bounded;
-pub mod camera;
 pub mod control;
 mod csv_named_rows;
 pub mod fingerprint;
-pub mod folder;
-pub mod inputs;
-pub mod photo;
-pub mod photograph;
-mod pipelined;
 pub mod points;
 pub mod points_write;
-pub mod print;
 pub mod rendered;
-pub mod st_map;
 pub mod stations;
-pub mod table;
 
-pub use atomic::{OutputFile, at};
-pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
-pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
+pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use fingerprint::Fingerprint;
-pub use folder::{FilledFolder, NewFile, NewFolder, OutputFolder};
-pub use inputs::Inputs;
-pub use photo::{
-    DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,
-    read_photo, read_photo_as, read_with_levels, size_of, write_png,
-};
-pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
+pub use points::{PointFile, PointFileError, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};
-pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
-pub use table::{Row, write_rows, write_table};
+pub use stations::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_observed_stations, read_stations, station_numbers};
 
 /// The example of the README.
 #[cfg(doctest)]

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use calibench_model::{Measurement, Rejection, Start};
+use calibench_files::table::{Row, write_made_rows};
+use calibench_model::{Measurement, PointRef, Rejection, Start};
 
-use crate::points::{COVARIANCE, PointRef, REQUIRED, RESULT, SHAPE};
-use crate::table::{Row, write_made_rows};
+use crate::points::{COVARIANCE, REQUIRED, RESULT, SHAPE};
 
 /// One measured, rejected or unmeasurable point.
 #[derive(Clone, Debug)]

@@ -3,13 +3,14 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use calibench_files::bounded;
+use calibench_files::table::write_table;
 use calibench_model::escape;
+use calibench_model::points::Names;
 use csv::StringRecord;
 
-use crate::bounded;
 use crate::fingerprint::Fingerprint;
-use crate::points::{Names, PointFileError, csv_error, line_of};
-use crate::table::write_table;
+use crate::points::{PointFileError, csv_error, line_of};
 
 /// The name of the list in the folder.
 pub const RENDERED: &str = "rendered.csv";

@@ -3,9 +3,9 @@
 use std::io::Read;
 use std::path::Path;
 
-use calibench_model::Pose;
+use calibench_files::bounded;
+use calibench_model::{ObservedStation, Pose, StationRow};
 
-use crate::bounded;
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
 
@@ -19,26 +19,6 @@ const FORM: Form = Form { what: "station file", key: "image", required: &POSE_CO
 const GROUPS: [&[&str]; 2] = [POSE_SIGMA_COLUMNS.split_at(3).0, POSE_SIGMA_COLUMNS.split_at(3).1];
 /// With standard deviations; each group is there whole or not at all.
 const OBSERVED: Form = Form { optional: &GROUPS, ..FORM };
-
-/// An image and its exterior orientation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StationRow {
-    /// The image's name.
-    pub image: String,
-    /// Its pose.
-    pub pose: Pose,
-}
-
-/// An image whose exterior orientation was observed, or a part of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ObservedStation {
-    /// The image and its pose.
-    pub station: StationRow,
-    /// Standard deviations of X0, Y0, Z0, object units; `None` where the file gives none.
-    pub centre: Option<[f64; 3]>,
-    /// Standard deviations of a small rotation about the camera's axes x, y, z, radians; `None` where the file gives none.
-    pub rotation: Option<[f64; 3]>,
-}
 
 /// As [`read_stations`], with the standard deviations `sX0,sY0,sZ0` (object units) and `sx_deg,sy_deg,sz_deg` (about the camera's axes), of which either
 /// group may be missing or left empty in a row.

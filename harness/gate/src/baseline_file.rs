@@ -6,7 +6,7 @@ use std::fs;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::atomic::write_atomically;
+use calibench_files::atomic::write_atomically;
 use csv::{Position, StringRecord};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

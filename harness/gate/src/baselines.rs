@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::at;
+use calibench_files::at;
 
 use super::Check;
 use super::baseline::{baseline_path, figures_path, images_path, read_baseline};

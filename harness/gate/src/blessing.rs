@@ -3,8 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::at;
-use calibench_exchange::atomic::write_atomically;
+use calibench_files::at;
+use calibench_files::atomic::write_atomically;
 
 use super::accepted_worse::worse_than;
 use super::baseline::{read_baseline, write_baseline};

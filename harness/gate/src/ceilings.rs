@@ -117,7 +117,7 @@ impl Ceilings {
     /// # Errors
     /// A file that is not there or cannot be read; every mistake in it with line and column, unknown keys among them.
     pub fn read(path: &Path) -> Result<Self, CeilingError> {
-        match calibench_exchange::bounded::text(path) {
+        match calibench_files::bounded::text(path) {
             Ok(text) => Ok(Self::parse(&path.display().to_string(), &text)?),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Err(CeilingError::Missing(path.to_owned())),
             Err(source) => Err(CeilingError::File { path: path.to_owned(), source }),

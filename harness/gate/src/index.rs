@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::atomic::write_atomically;
+use calibench_files::atomic::write_atomically;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -51,7 +51,7 @@ impl Index {
     /// A list that is not there or means nothing.
     pub fn read(folder: &Path) -> Result<Self, IndexError> {
         let path = folder.join(INDEX);
-        match calibench_exchange::bounded::text(&path) {
+        match calibench_files::bounded::text(&path) {
             Ok(text) => {
                 toml::from_str(&text).map_err(|error: toml::de::Error| IndexError::Text { path, problem: error.message().to_owned() })
             }

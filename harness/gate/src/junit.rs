@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use calibench_model::escape;
+
 use super::finding::{Finding, Rules};
 
 /// A document with a test case for each of `compared` (scenario, method) and for every other pair that a finding is about: a case fails
@@ -50,17 +52,12 @@ fn line(finding: &Finding) -> String {
 
 /// Text that XML can hold: marks as entities; characters that it forbids, written out.
 fn xml(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '&' => "&amp;".to_owned(),
-            '<' => "&lt;".to_owned(),
-            '>' => "&gt;".to_owned(),
-            '"' => "&quot;".to_owned(),
-            '\n' => "\n".to_owned(),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => c.escape_default().to_string(),
-            c => c.to_string(),
-        })
-        .collect()
+    escape::markup(text, |c| match c {
+        '"' => Some("&quot;".into()),
+        '\n' => None,
+        c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => Some(c.escape_default().to_string().into()),
+        _ => None,
+    })
 }
 
 #[cfg(test)]

@@ -4,10 +4,9 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 
 use calibench_diagnostics::nearest;
-use calibench_exchange::ControlRow;
 use calibench_measure::Board;
 use calibench_model::boards::{self, BoardError};
-use calibench_model::escape;
+use calibench_model::{ControlRow, escape};
 
 /// A chessboard, or any points of known coordinates: marks on a house, a wall of targets.
 #[derive(Clone, Debug, PartialEq)]

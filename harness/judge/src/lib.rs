@@ -39,7 +39,7 @@ pub use field::{Field, field_of};
 pub use material::{Corners, FEWEST, Material};
 pub use options::{BENT, METHODS, MODELS, OF_CAMERA, Options, usual_methods, usual_models};
 pub use point_files::Expected;
-pub use published::{published_camera, stated_sigma};
+pub use published::stated_sigma;
 pub use remaining::{Remaining, remaining};
 
 /// Why nothing can be judged.

@@ -4,9 +4,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use calibench_adjust::approximate::Control;
-use calibench_exchange::Points;
 use calibench_model::camera::ImageSize;
-use calibench_model::{PixelPoint, Start};
+use calibench_model::{PixelPoint, Points, Start};
 use calibench_records::judgement::COMPARABLE;
 use calibench_records::results::{MethodInfo, Outcome, Trial};
 use nalgebra::Point3;

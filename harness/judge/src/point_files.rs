@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use calibench_exchange::{PointFile, PointRef};
-use calibench_model::PixelPoint;
+use calibench_exchange::PointFile;
 use calibench_model::camera::ImageSize;
+use calibench_model::{PixelPoint, PointRef};
 
 use super::{Corners, Field, Material};
 

@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 
 use calibench_model::boards::{Board, BoardError, Layout};
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Told};
-
-use crate::Operator;
+use calibench_model::{Image, PixelPoint, Rejection};
 
 /// A board that is looked for.
 #[derive(Clone, Debug)]
@@ -61,29 +59,6 @@ pub trait BoardFinder: Send + Sync {
     /// What a reader of its results has to know of how they came about.
     fn notes(&self) -> Vec<String> {
         Vec::new()
-    }
-}
-
-/// A finder as a method: it is asked for boards, and measures nothing of which it does not know what board it is on.
-pub struct Finds<F>(pub F);
-
-impl<F: BoardFinder> Operator for Finds<F> {
-    /// # Errors
-    /// [`Rejection::NotDetected`], always.
-    fn measure(&self, _: &Image, _: &Start) -> Result<Measurement, Rejection> {
-        Err(Rejection::NotDetected)
-    }
-
-    fn is_local(&self) -> bool {
-        false
-    }
-
-    fn board_finder(&self) -> Option<&dyn BoardFinder> {
-        Some(&self.0)
-    }
-
-    fn told(&self) -> Told {
-        Told::said(self.0.notes())
     }
 }
 

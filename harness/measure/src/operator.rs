@@ -64,6 +64,29 @@ pub trait Operator: Send + Sync {
     }
 }
 
+/// A finder as a method: it is asked for boards, and measures nothing of which it does not know what board it is on.
+pub struct Finds<F>(pub F);
+
+impl<F: BoardFinder> Operator for Finds<F> {
+    /// # Errors
+    /// [`Rejection::NotDetected`], always.
+    fn measure(&self, _: &Image, _: &Start) -> Result<Measurement, Rejection> {
+        Err(Rejection::NotDetected)
+    }
+
+    fn is_local(&self) -> bool {
+        false
+    }
+
+    fn board_finder(&self) -> Option<&dyn BoardFinder> {
+        Some(&self.0)
+    }
+
+    fn told(&self) -> Told {
+        Told::said(self.0.notes())
+    }
+}
+
 /// The whole pixel (column, row) nearest to a start, around which a window is laid.
 ///
 /// # Errors

@@ -83,6 +83,38 @@ pub struct Parameter {
     pub always_shown: bool,
 }
 
+impl Parameter {
+    const fn new(name: &'static str, about: &'static str, domain: Domain, default: f64) -> Self {
+        Self { name, about, domain, default, always_shown: false }
+    }
+
+    /// An odd number of px from the first of `bounds` to the second: a window. `about` says what it means, with its unit.
+    pub const fn odd(name: &'static str, about: &'static str, [min, max]: [u32; 2], default: f64) -> Self {
+        Self::new(name, about, Domain::Odd { min, max }, default)
+    }
+
+    /// A whole number within bounds, as [`Self::odd`].
+    pub const fn whole(name: &'static str, about: &'static str, [min, max]: [u32; 2], default: f64) -> Self {
+        Self::new(name, about, Domain::Whole { min, max }, default)
+    }
+
+    /// A number within bounds, as [`Self::odd`].
+    pub const fn real(name: &'static str, about: &'static str, [min, max]: [f64; 2], default: f64) -> Self {
+        Self::new(name, about, Domain::Real { min, max }, default)
+    }
+
+    /// One of some whole numbers, which are in order.
+    pub const fn choice(name: &'static str, about: &'static str, of: &'static [u32], default: f64) -> Self {
+        Self::new(name, about, Domain::Choice(of), default)
+    }
+
+    /// The same, as part of the method's label even at its default.
+    #[must_use]
+    pub const fn always_shown(self) -> Self {
+        Self { always_shown: true, ..self }
+    }
+}
+
 /// Checked values of all parameters of one method, in the order of their declaration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {

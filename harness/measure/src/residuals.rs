@@ -1,19 +1,18 @@
 //! What a fit leaves: noise, or something that the model does not picture.
 
 use crate::lanes::{WIDE, sum};
-use crate::parameter::{Domain, Parameter};
+use crate::parameter::Parameter;
 
 /// The parameter of operators that fit an outline: the root of the covariance of neighbouring residuals, in units of half the contrast, beyond which a window holds
 /// something else.
 pub(crate) const fn misfit(default: f64) -> Parameter {
-    Parameter {
-        name: "misfit",
-        about: "rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise: something else is in the window. \
+    Parameter::real(
+        "misfit",
+        "rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise: something else is in the window. \
                 2: nothing is rejected",
-        domain: Domain::Real { min: 0.0, max: 2.0 },
+        [0.0, 2.0],
         default,
-        always_shown: false,
-    }
+    )
 }
 
 /// Structure has a covariance of neighbours of so many standard deviations of that of white noise.

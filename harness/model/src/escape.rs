@@ -1,4 +1,4 @@
-//! Names in texts: on a terminal, in Markdown and in CSV, where some characters are commands.
+//! Names in texts: on a terminal, in Markdown, XML, HTML and CSV, where some characters are commands.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -45,6 +45,23 @@ pub fn markdown(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(out)
+}
+
+/// A text within XML or HTML: `&`, `<` and `>` as entities, and of every other character what `other` has in its place, if anything.
+pub fn markup<'t>(text: &str, other: impl Fn(char) -> Option<Cow<'t, str>>) -> String {
+    let mut out = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            c => match other(c) {
+                Some(instead) => out.push_str(&instead),
+                None => out.push(c),
+            },
+        }
+    }
+    out
 }
 
 /// A name as code within Markdown, between as many back quotes as it takes.
@@ -125,6 +142,13 @@ mod tests {
         assert_eq!(in_place(hostile), "a?b??c???d\n\tµ");
         assert_eq!(in_place(hostile).len(), hostile.len());
         assert!(matches!(message("Förstner 3 µm, 測定"), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn markup_is_shown_as_it_is_written() {
+        let quoted = |c: char| (c == '"').then_some("&quot;".into());
+        assert_eq!(markup("<a b=\"c\"> & 'd'\n", quoted), "&lt;a b=&quot;c&quot;&gt; &amp; 'd'\n");
+        assert_eq!(markup("a\u{7}b", |c| c.is_control().then(String::new).map(Cow::from)), "ab");
     }
 
     #[test]

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
-use calibench_exchange::PointRow;
-use calibench_model::{Image, Start, Testfield};
+use calibench_model::{Image, PointRow, Start, Testfield};
 use calibench_recognise::{NotRecognised, Reason, Recogniser, Recognition};
 use rayon::prelude::*;
 

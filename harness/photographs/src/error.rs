@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::PhotoError;
+use calibench_images::PhotoError;
 use calibench_model::camera::ImageSize;
 use thiserror::Error;
 

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_detect::{FoundPoint, detect};
-use calibench_exchange::{ControlDisc, ControlRow, PointRow};
 use calibench_model::boards::{Board, BoardError, BoardPoint, Layout};
-use calibench_model::{Image, Start, TargetKind};
+use calibench_model::{ControlDisc, ControlRow, Image, PointRow, Start, TargetKind};
 use rayon::prelude::*;
 
 use crate::names::{names, once};

@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{LostRow, PointRow};
 use calibench_measure::Operator;
-use calibench_model::Start;
 use calibench_model::camera::ImageSize;
+use calibench_model::{LostRow, PointRow, Start};
 use rayon::prelude::*;
 
 use crate::copies::copies;

@@ -1,20 +1,20 @@
 //! A board as options write it: in words, or as a file.
 
+use std::fmt::Display;
 use std::path::Path;
 
-use calibench_exchange::camera::read_kalibr_target;
 use calibench_model::boards::{Board, KINDS};
 
 use crate::Chessboard;
 
-/// The board of a text: `9x6:25` for a chessboard, a kind with its counts and lengths, or a target file of Kalibr's (`.yaml`).
+/// The board of a text: `9x6:25` for a chessboard, a kind with its counts and lengths, or a target file of Kalibr's (`.yaml`), which `of_file` reads.
 ///
 /// # Errors
 /// A text that describes no board, with the kinds that there are; a file that cannot be read.
-pub fn board_of(text: &str) -> Result<Board, String> {
+pub fn board_of<E: Display>(text: &str, of_file: impl Fn(&Path) -> Result<Board, E>) -> Result<Board, String> {
     let ending = Path::new(text).extension().map(std::ffi::OsStr::to_ascii_lowercase);
     if ending.is_some_and(|ending| ending == "yaml" || ending == "yml") {
-        return read_kalibr_target(Path::new(text)).map_err(|error| format!("{text}: {error}"));
+        return of_file(Path::new(text)).map_err(|error| format!("{text}: {error}"));
     }
     if text.starts_with(|first: char| first.is_ascii_digit()) {
         return text.parse::<Chessboard>().map(Board::from);
@@ -31,17 +31,17 @@ mod tests {
 
     #[test]
     fn boards_are_written_in_three_ways() {
+        let grid: Board = "aprilgrid:6x6:0.088:0.3".parse().unwrap();
+        let of_file = |path: &Path| if path == Path::new("target.yaml") { Ok(grid) } else { Err("no such file") };
+        let board_of = |text: &str| board_of(text, of_file);
         assert_eq!(board_of("9x6:25"), Ok("chessboard:9x6:25".parse().unwrap()));
         assert_eq!(board_of("charuco:8x5:30:21:DICT_4X4_50"), Ok("charuco:8x5:30:21:DICT_4X4_50".parse().unwrap()));
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("target.yaml");
-        std::fs::write(&file, "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 0.3\n").unwrap();
-        assert_eq!(board_of(file.to_str().unwrap()), Ok("aprilgrid:6x6:0.088:0.3".parse().unwrap()));
+        assert_eq!(board_of("target.yaml"), Ok(grid));
         for (text, said) in [
             ("9x6", "is no chessboard"),
             ("mine", "is no kind of board: expected one of chessboard"),
             ("rings:12", "no count"),
-            ("missing.yaml", "missing.yaml: "),
+            ("missing.yaml", "missing.yaml: no such file"),
         ] {
             let error = board_of(text).unwrap_err();
             assert!(error.contains(said), "{error}");

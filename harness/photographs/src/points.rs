@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use calibench_exchange::{Outcome, Points};
+use calibench_exchange::Outcome;
 use calibench_measure::{Configured, Operator};
-use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start, stop};
+use calibench_model::{Covariance, Image, Measurement, PixelPoint, Points, Rejection, Start, stop};
 use rayon::prelude::*;
 
 use crate::names::{ambiguous, names, once};
@@ -187,7 +187,7 @@ pub fn photos_of(points: &Points, photos: &[PathBuf]) -> Result<Vec<Option<usize
 
 #[cfg(test)]
 mod tests {
-    use calibench_exchange::write_png;
+    use calibench_images::write_png;
     use calibench_measure::Registry;
     use calibench_model::TargetKind;
 
@@ -248,7 +248,7 @@ mod tests {
         for (m, method) in methods.iter().take(4).enumerate() {
             let mut point = 0;
             for (path, (_, starts)) in photos.iter().zip(&boards) {
-                let alone = method.operator.as_ref().unwrap().measure_all(&calibench_exchange::read_photo(path).unwrap().image, starts);
+                let alone = method.operator.as_ref().unwrap().measure_all(&calibench_images::read_photo(path).unwrap().image, starts);
                 assert!(alone.iter().filter(|result| result.is_ok()).count() * 2 > starts.len(), "{}", method.label);
                 for result in alone {
                     let outcome = result.map_or_else(Outcome::Rejected, Outcome::Measured);

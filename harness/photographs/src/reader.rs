@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use calibench_exchange::photo::{DeepLevels, Depth, read_with_levels};
-use calibench_exchange::{Head, PhotoError, Reading, head_of, read_photo_as};
+use calibench_images::photo::{DeepLevels, Depth, read_with_levels};
+use calibench_images::{Head, PhotoError, Reading, head_of, read_photo_as};
 use calibench_model::Image;
 use calibench_model::camera::ImageSize;
 use rayon::prelude::*;
@@ -154,7 +154,7 @@ fn words(depth: Depth, largest: u16, deep: &[&Path]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use calibench_exchange::photo::encode_png;
+    use calibench_images::photo::encode_png;
 
     use super::*;
 

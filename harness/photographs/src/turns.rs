@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use calibench_exchange::Turn;
+use calibench_images::Turn;
 
 /// A line for each orientation that photographs ask for: whether they are turned as they ask, or, if `ignored` was asked for or they are taken `as_stored` because
 /// not all ask for the same, that they are not; and a warning where the rows of the sensor are not the rows of every image. Nothing for photographs that stand

@@ -9,7 +9,7 @@ use calibench_measure::parameter::Domain;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::starts;
+use crate::starts::{self, Starts};
 
 /// A declared plug-in.
 #[derive(Clone, Debug)]
@@ -71,31 +71,6 @@ impl Grey {
             Self::Gray32f => "gray32f",
         }
     }
-}
-
-/// What a plug-in is told of where to look.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Starts {
-    /// Approximate positions: it answers each of them.
-    Given,
-    /// Nothing: it finds what there is in the image, and of each target the nearest within this radius, px, counts.
-    None {
-        /// The radius, px.
-        radius: f64,
-    },
-    /// The board: it finds it in the whole image, its points by name.
-    Board(Boards),
-}
-
-/// What a plug-in that finds boards says of itself.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Boards {
-    /// The kinds of board that it finds, as options write them; none: all.
-    pub kinds: Vec<String>,
-    /// Whether (0, 0) is the outer corner of the first pixel in its answers.
-    pub from_corner: bool,
-    /// How far its points lie away from the middle of their marker, or of the board, px, by kind; of other kinds not at all.
-    pub outwards: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]

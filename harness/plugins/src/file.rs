@@ -9,7 +9,8 @@ use toml::Spanned;
 
 use crate::declaration::{self, Declaration};
 use crate::error::PluginError;
-use crate::program::{Launcher, method};
+use crate::method::method;
+use crate::program::Launcher;
 use crate::recorded::{self, Recording, RecordingWire};
 
 #[derive(Deserialize)]
@@ -72,7 +73,7 @@ pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Resul
     files.sort();
     let mut known: Vec<(String, PathBuf)> = Vec::new();
     for path in files {
-        let text = calibench_exchange::bounded::text(&path).map_err(|error| file_error(&path, error))?;
+        let text = calibench_files::bounded::text(&path).map_err(|error| file_error(&path, error))?;
         for declared in parse(&path.display().to_string(), &text)? {
             let name = declared.name().to_owned();
             if let Some((_, earlier)) = known.iter().find(|(other, _)| *other == name) {

@@ -6,9 +6,11 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 use calibench_exchange::points::{Check, parse_points_checked};
-use calibench_exchange::{PointFile, PointRef, at, encode_float_tiff, encode_png, write_points};
+use calibench_exchange::{PointFile, write_points};
+use calibench_files::at;
+use calibench_images::{encode_float_tiff, encode_png};
 use calibench_measure::Settings;
-use calibench_model::{Image, Measurement, Rejection, Start};
+use calibench_model::{Image, Measurement, PointRef, Rejection, Start};
 use rustix::fs::OFlags;
 use tempfile::TempDir;
 

@@ -13,6 +13,7 @@ mod descendants;
 mod error;
 mod file;
 mod folder;
+mod method;
 mod operator;
 mod patience;
 mod process;
@@ -24,11 +25,13 @@ mod told;
 
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
-pub use declaration::{Boards, Declaration, Grey, Mode, Starts, is_name};
+pub use declaration::{Declaration, Grey, Mode, is_name};
 pub use error::PluginError;
 pub use file::{Declared, load, parse};
-pub use program::{Launcher, method};
+pub use method::method;
+pub use program::Launcher;
 pub use recorded::{Images, Origin, Positions, Recording};
+pub use starts::{Boards, Starts};
 pub use told::Teller;
 
 /// The example of the README.

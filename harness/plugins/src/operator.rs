@@ -10,11 +10,12 @@ use rand::seq::SliceRandom;
 
 use crate::answer::{Answer, Fault, read};
 use crate::boards::points_of;
-use crate::declaration::{Boards, Mode, Starts};
+use crate::declaration::Mode;
 use crate::folder;
 use crate::patience::{self, Patience};
 use crate::program::Program;
 use crate::request::{Wanted, body, head, rounds};
+use crate::starts::{Boards, Starts};
 
 /// Bytes of an answer for each position.
 const BYTES_A_POSITION: usize = 400;

@@ -7,15 +7,14 @@ use std::process::Command;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use calibench_measure::{Build, Method, Operator, Outside, Settings, Sought};
+use calibench_measure::{Settings, Sought};
 use calibench_model::Rejection;
 use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::answer::{Fault, greeted};
 use crate::confine::Confinement;
-use crate::declaration::{Declaration, Mode, leak};
-use crate::operator::Asked;
+use crate::declaration::Declaration;
 use crate::patience::Patience;
 use crate::process::Process;
 use crate::request::greeting;
@@ -50,7 +49,7 @@ pub struct Program {
     pub declaration: Declaration,
     command: Vec<OsString>,
     /// A hash of its files.
-    files: String,
+    pub files: String,
     folder: PathBuf,
     launcher: Launcher,
     idle: Mutex<BTreeMap<Vec<u8>, Vec<Started>>>,
@@ -65,7 +64,8 @@ pub struct Started {
     pub process: Process,
     /// How many images it was asked about.
     pub asked: u64,
-    version: String,
+    /// As it said.
+    pub version: String,
     _scratch: TempDir,
 }
 
@@ -76,7 +76,8 @@ struct Confined {
 }
 
 impl Program {
-    fn new(declaration: Declaration, folder: &Path, launcher: Launcher) -> Self {
+    /// The declared program; `folder` is that of the file that declares it.
+    pub fn new(declaration: Declaration, folder: &Path, launcher: Launcher) -> Self {
         // It is started somewhere else.
         let folder = &folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         let beside = |word: &String| Some(folder.join(word)).filter(|path| path.is_file());
@@ -147,7 +148,7 @@ impl Program {
     }
 
     /// Why there is no such program, if so.
-    fn lacking(&self) -> Option<String> {
+    pub fn lacking(&self) -> Option<String> {
         let program = Path::new(self.command.first()?);
         let there = if program.components().count() > 1 {
             program.is_file()
@@ -216,34 +217,6 @@ fn ended(message: String) -> Fault {
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     // What is kept here is whole at any time.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A declared plug-in as a method. `folder` is that of its file.
-pub fn method(declaration: Declaration, folder: &Path, launcher: &Launcher) -> Method {
-    let (name, about) = (leak(declaration.name.clone()), leak(declaration.about.clone()));
-    let (source, parameters) = (leak(declaration.source.clone()), Box::leak(declaration.parameters.clone().into_boxed_slice()));
-    let program = Arc::new(Program::new(declaration, folder, launcher.clone()));
-    let files = program.files.clone();
-    let asked = |program: &Arc<Program>, settings: &Settings| Box::new(Asked::new(program.clone(), settings.clone()));
-    if let Mode::Folder { version } = &program.declaration.mode {
-        // It is not started before there is an image.
-        let version = format!("{} ({files})", short(version));
-        let known = version.clone();
-        let build = move |settings: &Settings| {
-            let operator = program.lacking().map_or_else(|| Ok(asked(&program, settings) as Box<dyn Operator>), Err);
-            Ok(Outside { version: known.clone(), operator })
-        };
-        return Method { name, about, source, version, parameters, build: Build::Outside(Arc::new(build)) };
-    }
-    let build = move |settings: &Settings| match program.process(settings) {
-        Ok(started) => {
-            let version = format!("{} ({})", started.version, program.files);
-            program.keep(settings, started);
-            Ok(Outside { version, operator: Ok(asked(&program, settings)) })
-        }
-        Err(fault) => Ok(Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) }),
-    };
-    Method { name, about, source, version: format!("? ({files})"), parameters, build: Build::Outside(Arc::new(build)) }
 }
 
 #[cfg(test)]

@@ -7,13 +7,36 @@ use calibench_model::boards::KINDS;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::declaration::{Boards, Starts};
-
 /// How near a detection must be to a target unless the file says otherwise, px.
 const RADIUS: f64 = 5.0;
 
 /// How far a detector may say that its points lie outwards, px.
 const OUTWARDS: f64 = 10.0;
+
+/// What a plug-in is told of where to look.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Starts {
+    /// Approximate positions: it answers each of them.
+    Given,
+    /// Nothing: it finds what there is in the image, and of each target the nearest within this radius, px, counts.
+    None {
+        /// The radius, px.
+        radius: f64,
+    },
+    /// The board: it finds it in the whole image, its points by name.
+    Board(Boards),
+}
+
+/// What a plug-in that finds boards says of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boards {
+    /// The kinds of board that it finds, as options write them; none: all.
+    pub kinds: Vec<String>,
+    /// Whether (0, 0) is the outer corner of the first pixel in its answers.
+    pub from_corner: bool,
+    /// How far its points lie away from the middle of their marker, or of the board, px, by kind; of other kinds not at all.
+    pub outwards: BTreeMap<String, f64>,
+}
 
 /// How far points lie outwards, px: of all kinds of board, or of each.
 #[derive(Debug, Deserialize)]

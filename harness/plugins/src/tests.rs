@@ -3,9 +3,10 @@
 use calibench_model::{Image, PixelPoint, Rejection, Start, TargetKind};
 
 use crate::answer::{Answer, read};
-use crate::declaration::{Declaration, Grey, Starts};
+use crate::declaration::{Declaration, Grey};
 use crate::file::{Declared, parse};
 use crate::request::{Wanted, body, greeting, head, rounds};
+use crate::starts::Starts;
 
 const GOOD: &str = r#"
 [[plugin]]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use calibench_exchange::PhotoError;
+use calibench_images::PhotoError;
 use calibench_model::Rejection;
 use calibench_model::camera::ImageSize;
 use calibench_report::{HELPERS, POLICY, STYLE, escaped, in_script};
@@ -147,7 +147,7 @@ fn foot(content: &Content, pictured: &[Pictured], key: &mut blake3::Hasher, meth
 
 #[cfg(test)]
 mod tests {
-    use calibench_exchange::write_png;
+    use calibench_images::write_png;
     use calibench_model::Image;
 
     use super::*;

@@ -1,9 +1,8 @@
 //! Where the other targets of an image must be, once some are known.
 
 use calibench_adjust::approximate::{Control, Search, Shape, Tolerance, homography, resect};
-use calibench_exchange::ControlRow;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{ControlRow, PixelPoint, Pose};
 use nalgebra::Point3;
 
 /// Height over their plane, as a share of their extent, up to which points are taken for those of a plane.

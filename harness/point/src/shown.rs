@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use calibench_exchange::{PhotoError, head_of, read_photo};
+use calibench_images::{PhotoError, head_of, read_photo};
 use calibench_model::{Image, level};
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageError};

@@ -1,7 +1,7 @@
 //! Methods by their names, as users write them.
 
 use calibench_diagnostics::nearest;
-use calibench_measure::kinds::distinct;
+use calibench_measure::coverage::distinct;
 use calibench_measure::{Configured, KindsError, MethodError};
 use calibench_model::TargetKind;
 

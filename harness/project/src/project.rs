@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use calibench_exchange::folder::is_project;
+use calibench_files::folder::is_project;
 use calibench_measure::Registry;
 use calibench_plugins::{Launcher, load};
 use calibench_report::Places;

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::Inputs;
+use calibench_cameras::inputs_of;
+use calibench_files::Inputs;
 use calibench_scenario::catalogue::{Catalogue, LOCAL, is_toml};
 use calibench_scenario::{Scenario, Subject};
 
@@ -72,7 +73,7 @@ impl Project<'_> {
             (Subject::Photographs(found), Ok(data)) => found.files.iter().map(|file| data.join(&found.folder).join(file)).collect(),
             _ => Vec::new(),
         };
-        Inputs::new(file.into_iter().chain(camera).chain(photographs))
+        inputs_of(file.into_iter().chain(camera).chain(photographs))
     }
 }
 

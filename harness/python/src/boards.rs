@@ -1,8 +1,8 @@
 //! What was photographed: a board in a word, or object coordinates as an array or by names.
 
-use calibench_exchange::ControlRow;
+use calibench_cameras::read_kalibr_target;
 use calibench_judge::{Field, field_of};
-use calibench_model::boards;
+use calibench_model::{ControlRow, boards};
 use calibench_photographs::{Finder, board_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -13,7 +13,7 @@ use crate::error::input;
 /// The object coordinates of a board's points by their names: X to the right, Y upwards, Z towards the viewer, from the first point.
 #[pyfunction]
 pub fn board(text: &str) -> PyResult<Vec<(String, [f64; 3])>> {
-    let finder = Finder::new(board_of(text).map_err(input)?).map_err(input)?;
+    let finder = Finder::new(board_of(text, read_kalibr_target).map_err(input)?).map_err(input)?;
     Ok(finder.control().into_iter().map(|row| (row.target, row.position)).collect())
 }
 
@@ -34,7 +34,7 @@ impl Board {
     /// Anything else.
     pub fn of(board: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(text) = board.extract::<String>() {
-            let pictured = board_of(&text).map_err(input)?;
+            let pictured = board_of(&text, read_kalibr_target).map_err(input)?;
             let control = Finder::new(pictured).map_err(input)?.control();
             return Ok(Self { control, field: field_of(&pictured).map_err(input)?, pictured: Some(pictured) });
         }

@@ -7,8 +7,8 @@ use calibench_calibrate::{
     BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve,
     prepare, suspected,
 };
-use calibench_exchange::NamedCamera;
 use calibench_judge::BENT;
+use calibench_model::NamedCamera;
 use calibench_model::Pose as Exterior;
 use calibench_report::calibration::{summary, warnings};
 use nalgebra::DMatrix;

@@ -2,17 +2,17 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::conversion::{Converted, converted};
-use calibench_exchange::camera::fit::losses;
-use calibench_exchange::camera::for_file::for_file;
-use calibench_exchange::camera::open_points::OpenPoints;
-use calibench_exchange::camera::target::{Given, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, format_named, read_camera_with, write_camera};
-use calibench_exchange::st_map::{Overscan, Undistorted};
-use calibench_exchange::{OutputFile, ReadOptions};
-use calibench_model::PixelPoint;
+use calibench_cameras::conversion::{Converted, converted};
+use calibench_cameras::fit::losses;
+use calibench_cameras::for_file::for_file;
+use calibench_cameras::open_points::OpenPoints;
+use calibench_cameras::target::{Given, goal};
+use calibench_cameras::{CameraFormat, ReadOptions, format_named, read_camera_with, write_camera};
+use calibench_files::OutputFile;
+use calibench_images::st_map::{Overscan, Undistorted};
 use calibench_model::camera::{CameraModel, ImageSize, Ray, Verification, fold};
 use calibench_model::convert::{ConvertOptions, Method, Region, Verdict};
+use calibench_model::{NamedCamera, PixelPoint};
 use numpy::PyArray2;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use calibench_cameras::read_kalibr_target;
 use calibench_photographs::coded::coded_of;
 use calibench_photographs::{Finder, board_of};
 use calibench_recognise::{Classifier, Recogniser};
@@ -31,7 +32,7 @@ pub fn detect(
         (Some(board), None) => {
             // A chessboard with or without the side of a square.
             let with_side = if board.contains(':') || board.contains('.') { board.to_owned() } else { format!("{board}:1") };
-            let finder = Finder::new(board_of(&with_side).map_err(input)?).map_err(input)?;
+            let finder = Finder::new(board_of(&with_side, read_kalibr_target).map_err(input)?).map_err(input)?;
             let found = interruptible(py, || finder.find(&image, "image"))?;
             found.doubts.iter().try_for_each(|what| doubt(py, what))?;
             let targets = starts(py, found.rows.iter().map(|row| (row.target.as_str(), row.start)))?;

@@ -1,6 +1,6 @@
 //! Arrays as images.
 
-use calibench_exchange::photo::grey::{of_bytes, of_words};
+use calibench_images::photo::grey::{of_bytes, of_words};
 use calibench_model::Image;
 use numpy::{Element, PyReadonlyArray2, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
-use calibench_exchange::{LostRow, LostRows, PointFile};
+use calibench_exchange::PointFile;
 use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
 use calibench_model::camera::CameraModel;
+use calibench_model::{LostRow, LostRows};
 use calibench_photographs::{Finder, MeasuredBoards, Reader, measured_boards, method_info};
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
 use calibench_report::judgement::{in_use, section, verdict};

@@ -1,6 +1,6 @@
 //! `measure`: points of one image.
 
-use calibench_measure::kinds::all_busy;
+use calibench_measure::coverage::all_busy;
 use calibench_model::{Affine, Covariance, Measurement, Rejection, Start, TargetKind};
 use calibench_photographs::points::{is_one_share, shared_out};
 use calibench_project::Pictured;

@@ -1,7 +1,6 @@
 //! Points of several images: a list of arrays, each with a row for every point of the board.
 
-use calibench_exchange::Points;
-use calibench_model::{Covariance, Start};
+use calibench_model::{Covariance, Points, Start};
 use pyo3::prelude::*;
 
 use crate::arrays::{matrices, positions};

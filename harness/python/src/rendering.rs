@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::NamedCamera;
-use calibench_model::Start;
+use calibench_model::{NamedCamera, Start};
 use calibench_run::shots::{Shot as Rendered, TrueTarget, shots};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::IntoPyObjectExt;

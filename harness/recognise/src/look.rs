@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use calibench_model::PixelPoint;
+use calibench_model::{PixelPoint, upper_median};
 
 use crate::adjust::OnLine;
 use crate::bank::Bank;
@@ -136,10 +136,11 @@ impl Look<'_> {
         if explained == 0 || 2 * explained <= with_targets {
             return Err(NotRecognised::OtherField { squares: with_targets, explained });
         }
-        let mut sizes: Vec<f64> = labels.iter().flatten().flat_map(|labels| labels.sizes.iter().copied()).collect();
-        let middle = sizes.len() / 2;
-        let times = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
-        if SIZES.contains(&times) { Ok(labels) } else { Err(NotRecognised::OtherSizes { times }) }
+        let sizes = labels.iter().flatten().flat_map(|labels| labels.sizes.iter().copied());
+        match upper_median(sizes) {
+            Some(times) if !SIZES.contains(&times) => Err(NotRecognised::OtherSizes { times }),
+            _ => Ok(labels),
+        }
     }
 
     fn squares(&self, squares: &[Square], labels: &[Option<Labels>], identified: &Identified, found: &mut Recognition) {

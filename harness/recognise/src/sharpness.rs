@@ -1,6 +1,6 @@
 //! How blurred the lines of the grid are.
 
-use calibench_model::Image;
+use calibench_model::{Image, upper_median};
 
 use crate::grid::Grid;
 use crate::normal::cubic;
@@ -36,10 +36,7 @@ pub(crate) fn blur(image: &Image, grid: &Grid, line: f64, contrast: f64) -> f64 
             values.push(cubic(image, [x + off * normal[0], y + off * normal[1]]));
         }
     }
-    if width.is_empty() {
-        return LEAST;
-    }
-    let width = *width.clone().select_nth_unstable_by(width.len() / 2, f64::total_cmp).1;
+    let Some(width) = upper_median(width.iter().copied()) else { return LEAST };
     let middle = |values: &mut Vec<f32>| f64::from(*values.clone().select_nth_unstable_by(values.len() / 2, f32::total_cmp).1);
     let grey: Vec<f64> = profiles.iter_mut().map(middle).collect();
     let paper = grey.iter().copied().fold(f64::MIN, f64::max);

@@ -1,9 +1,9 @@
 //! A camera on a card: what it is, and what its parameters mean for the frame.
 
-use calibench_exchange::camera::{NamedCamera, ParameterCovariance, PoseFrame};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold, without_ray};
 use calibench_model::convert::without_distortion;
-use calibench_model::{PixelPoint, escape};
+use calibench_model::named_camera::{ParameterCovariance, PoseFrame};
+use calibench_model::{NamedCamera, PixelPoint, escape};
 
 use crate::plain;
 

@@ -29,5 +29,5 @@ impl Composed {
 /// The report that is there, as text alone.
 pub(crate) fn kept(places: &Places, family: &str) -> io::Result<String> {
     let path: PathBuf = places.reports.join(family).join(PAGE);
-    std::fs::read_to_string(&path).map_err(|error| calibench_exchange::at(&path, &error))
+    std::fs::read_to_string(&path).map_err(|error| calibench_files::at(&path, &error))
 }

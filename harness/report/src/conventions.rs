@@ -101,7 +101,7 @@ const INTRODUCTION: &str = "Made by `calibench report conventions` from the publ
     in px; and the maximum in mm on an object, across the line of sight.\n\n";
 
 fn files(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    let at = |error: std::io::Error| calibench_exchange::at(folder, &error);
+    let at = |error: std::io::Error| calibench_files::at(folder, &error);
     let entries = fs::read_dir(folder).map_err(at)?;
     let mut files: Vec<PathBuf> = entries.map(|entry| Ok(entry.map_err(at)?.path())).collect::<std::io::Result<_>>()?;
     files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
@@ -110,7 +110,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
 }
 
 fn read(path: &Path) -> Result<Cameras, ReportError> {
-    let text = calibench_exchange::bounded::text(path).map_err(|error| calibench_exchange::at(path, &error))?;
+    let text = calibench_files::bounded::text(path).map_err(|error| calibench_files::at(path, &error))?;
     toml::from_str(&text).map_err(|error| {
         let problems = vec![Problem::new(error.span().unwrap_or(0..0), error.message())];
         ReportError::Cameras(Problems { file: path.display().to_string(), text, problems })

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{FilledFolder, OutputFolder};
+use calibench_files::{FilledFolder, OutputFolder};
 
 use crate::canvas::write_pictures;
 use crate::composed::Composed;

@@ -1,6 +1,6 @@
 //! The two kinds of figure: an overview of an image, and panels that zoom in on points.
 
-use calibench_exchange::photo::Levels;
+use calibench_images::photo::Levels;
 use calibench_model::{Image, PixelPoint};
 use plotters::style::{BLACK, RGBColor};
 
@@ -201,8 +201,8 @@ fn legend(canvas: &mut Canvas, layers: &[Layer], column: u32, top: u32) {
 
 #[cfg(test)]
 mod tests {
-    use calibench_exchange::photo::read_levels;
-    use calibench_exchange::write_png;
+    use calibench_images::photo::read_levels;
+    use calibench_images::write_png;
 
     use super::*;
 

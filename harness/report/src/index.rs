@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::at;
+use calibench_files::at;
 
 use crate::places::PAGE;
 
@@ -31,7 +31,7 @@ pub fn write_index(reports: &Path) -> io::Result<()> {
         "# Reports\n\nThe answer of each page; behind it stand the figures. Made by `calibench report` from the records of `calibench run` and the published tables; nothing here is written by \
          hand.\n\n{lines}"
     );
-    calibench_exchange::folder::write_beside(reports, PAGE, text.as_bytes())
+    calibench_files::folder::write_beside(reports, PAGE, text.as_bytes())
 }
 
 /// What follows the title, up to an empty line, on one line; its links start from the folder above.

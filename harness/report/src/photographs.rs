@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use calibench_exchange::photo::Levels;
-use calibench_model::{PixelPoint, escape};
+use calibench_images::photo::Levels;
+use calibench_model::{PixelPoint, escape, median};
 use calibench_records::description::{Subject, looks};
 use calibench_records::judgement::Summary;
 use calibench_records::stored::read_judgement;
@@ -27,12 +27,10 @@ impl Compared {
     /// The middle of what the operators measured: the median of x and of y; `None` if fewer than two measured it.
     fn middle(&self, operators: &[usize]) -> Option<PixelPoint> {
         let found: Vec<PixelPoint> = operators.iter().filter_map(|&m| self.positions[m]).collect();
-        let median = |mut values: Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            let n = values.len();
-            f64::midpoint(values[(n - 1) / 2], values[n / 2])
-        };
-        (found.len() > 1).then(|| PixelPoint::new(median(found.iter().map(|p| p.x).collect()), median(found.iter().map(|p| p.y).collect())))
+        if found.len() < 2 {
+            return None;
+        }
+        Some(PixelPoint::new(median(found.iter().map(|p| p.x))?, median(found.iter().map(|p| p.y))?))
     }
 
     /// How far method `method` is from that middle, px.

@@ -1,6 +1,6 @@
 //! Why a run cannot be completed.
 
-use calibench_exchange::PhotoError;
+use calibench_images::PhotoError;
 use calibench_measure::KindsGap;
 use calibench_synth::local::LocalError;
 use calibench_synth::optics::OpticsError;

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use calibench_exchange::{NewFolder, size_of};
-use calibench_judge::{Field, Material, Options, judge, published_camera, stated_sigma};
+use calibench_cameras::published_camera;
+use calibench_files::NewFolder;
+use calibench_images::size_of;
+use calibench_judge::{Field, Material, Options, judge, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_records::compressor::Compressor;
 use calibench_records::judgement::{RECORDED_JUDGEMENT, Row, measure, write_rows};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use calibench_exchange::{encode_png, read_photo};
+use calibench_images::{encode_png, read_photo};
 use calibench_photographs::{Chessboard, Finder, measured_board};
 use calibench_records::names::kept_image_name;
 use calibench_records::results::Trial;

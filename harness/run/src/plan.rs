@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 use calibench_measure::{Configured, Known, Recorded, RunId};
 use calibench_model::Unknowns;
 use calibench_photographs::{Finder, method_info};

@@ -4,7 +4,8 @@
 
 use std::collections::BTreeMap;
 
-use calibench_exchange::{NewFolder, encode_png_densely};
+use calibench_files::NewFolder;
+use calibench_images::encode_png_densely;
 use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
 use calibench_recognise::{Recognition as Found, SizeGroup, recognise_each};
 use calibench_records::figures::{FigureName, Quantity};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::encode_png_densely;
+use calibench_images::encode_png_densely;
 use calibench_measure::ImageId;
 use calibench_model::{Image, Scene, Start};
 use calibench_random::{Key, Purpose, stream};

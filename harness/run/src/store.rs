@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::{NewFile, NewFolder, OutputFolder, at};
+use calibench_files::{NewFile, NewFolder, OutputFolder, at};
 use calibench_measure::Configured;
 use calibench_measure::registry::told;
 use calibench_model::Told;

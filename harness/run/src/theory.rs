@@ -1,6 +1,6 @@
 //! What theory says of the operator of Zhu, Wu & Wan on a scene without noise, beside its records.
 
-use calibench_exchange::read_photo;
+use calibench_images::read_photo;
 use calibench_measure::Configured;
 use calibench_measure::harris_paraboloid::HarrisParaboloid;
 use calibench_measure::paraboloid::{Paraboloid, Weights};

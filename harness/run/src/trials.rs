@@ -1,6 +1,6 @@
 //! All trials of a plan, in their order.
 
-use calibench_measure::kinds::cover;
+use calibench_measure::coverage::cover;
 use calibench_random::Key;
 use calibench_records::parts::Span;
 use calibench_records::results::{Calibrated, Trial};

@@ -2,10 +2,11 @@
 
 use std::io;
 
-use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
-use calibench_exchange::{ControlDisc, ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
+use calibench_cameras::{FORMATS, camera_text};
+use calibench_exchange::{POSE_COLUMNS, station_numbers, write_points};
+use calibench_files::{NewFolder, write_table};
 use calibench_model::camera::{Camera, ImageSize};
-use calibench_model::{Affine, ObjectTarget, PixelPoint, Pose, Scene, TargetKind};
+use calibench_model::{Affine, ControlDisc, ControlRow, NamedCamera, ObjectTarget, PixelPoint, Points, Pose, Scene, TargetKind};
 use calibench_records::names::kept_image_name;
 use calibench_scenario::ViewsSubject;
 use calibench_synth::local::LocalDistortion;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::encode_png_densely;
+use calibench_images::encode_png_densely;
 use calibench_measure::{Configured, ImageId};
 use calibench_model::{Image, TargetKind};
 use calibench_random::Key;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use calibench_cameras::{ReadOptions, read_camera_with};
 use calibench_diagnostics::Problem;
-use calibench_exchange::camera::{ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use calibench_synth::local::{LocalDesign, LocalError};
 use schemars::JsonSchema;

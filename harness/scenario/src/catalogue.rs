@@ -89,7 +89,7 @@ impl Catalogue {
             Some(folder) if !is_toml(Path::new(name)) => folder.join(format!("{name}.toml")),
             _ => PathBuf::from(name),
         };
-        match calibench_exchange::bounded::text(&path) {
+        match calibench_files::bounded::text(&path) {
             Ok(text) => Ok((path, text)),
             Err(error) if error.kind() == io::ErrorKind::NotFound && !is_toml(Path::new(name)) => Err(self.unknown(name)),
             Err(source) => Err(CatalogueError::File { path, source }),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use calibench_diagnostics::Problem;
-use calibench_measure::kinds::{all_busy, cover, distinct, unmeasured};
+use calibench_measure::coverage::{all_busy, cover, distinct, unmeasured};
 use calibench_measure::registry::KINDS;
 use calibench_measure::{BoardFinder, Configured, Kinds, KindsError, KindsGap, MethodError, Registry};
 use calibench_model::TargetKind;

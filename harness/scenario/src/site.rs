@@ -46,7 +46,7 @@ impl Surroundings<'_> {
     /// The views of the scenario in `file`, or what is wrong with it.
     fn views(&self, file: &str) -> Result<(ViewsSubject, Resolved), String> {
         let path = self.folder.join(file);
-        let text = calibench_exchange::bounded::text(&path).map_err(|error| format!("`{file}` cannot be read: {error}"))?;
+        let text = calibench_files::bounded::text(&path).map_err(|error| format!("`{file}` cannot be read: {error}"))?;
         // Before anything else: two files could name each other.
         let (root, _) = DeTable::parse_recoverable(&text);
         if root.get_ref().contains_key("transfer") {

@@ -47,6 +47,18 @@ impl Modules {
         [of_files, of_folders].concat()
     }
 
+    /// The files and folders side by side in one folder that need each other, be it through others between them: each such set once, its names sorted.
+    pub fn knots(&self) -> Vec<String> {
+        let arrows = self.between_siblings();
+        let reached: BTreeMap<&Module, BTreeSet<&Module>> = arrows.keys().map(|from| (from, reached(&arrows, from))).collect();
+        let knot = |module: &Module| {
+            let others = reached[module].iter().filter(|other| reached.get(*other).is_some_and(|back| back.contains(module)));
+            others.map(|module| module.join("/")).collect::<Vec<_>>()
+        };
+        let knots: BTreeSet<Vec<String>> = arrows.keys().map(knot).filter(|knot| knot.len() > 1).collect();
+        knots.into_iter().map(|knot| knot.join(", ")).collect()
+    }
+
     /// The arrows between files and folders of one folder: what a folder holds counts as the folder.
     fn between_siblings(&self) -> Arrows {
         let mut siblings = Arrows::new();
@@ -69,6 +81,15 @@ fn circles(arrows: &Arrows, counts: impl Fn(&Module, &Module) -> bool) -> Vec<St
         Some([from].into_iter().chain(&back).map(|module| module.join("/")).collect::<Vec<_>>().join(" -> "))
     };
     all.filter(|(from, to)| counts(from, to)).filter_map(circle).collect()
+}
+
+/// Where the arrows lead from `from`, itself included.
+fn reached<'a>(arrows: &'a Arrows, from: &'a Module) -> BTreeSet<&'a Module> {
+    let (mut reached, mut waiting) = (BTreeSet::from([from]), vec![from]);
+    while let Some(last) = waiting.pop() {
+        waiting.extend(arrows.get(last).into_iter().flatten().filter(|next| reached.insert(next)));
+    }
+    reached
 }
 
 /// The shortest way along the arrows.

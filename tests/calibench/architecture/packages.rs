@@ -1,6 +1,6 @@
 //! What `just package` needs of a crate, seen without building one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -149,6 +149,37 @@ fn dependencies_within_the_workspace_have_its_version() {
                 assert!(dependency.get("path").is_none(), "{name}: {other} has a path and no version");
             }
         }
+    }
+}
+
+/// The crates that are built again after a change of one, itself and these tests among them.
+fn rebuilt(changed: &str) -> BTreeSet<String> {
+    let mut all = crates();
+    all.insert("tests".to_owned(), root().join("tests"));
+    let needs = |folder: &PathBuf| {
+        let manifest = manifest(folder);
+        let kinds = ["dependencies", "dev-dependencies"].into_iter().filter_map(|kind| manifest.get(kind)?.as_table());
+        let names = kinds.flat_map(|all| all.keys()).filter_map(|name| name.strip_prefix("calibench-"));
+        names.map(str::to_owned).collect::<BTreeSet<String>>()
+    };
+    let needs: BTreeMap<&String, BTreeSet<String>> = all.iter().map(|(name, folder)| (name, needs(folder))).collect();
+    let mut found = BTreeSet::from([changed.to_owned()]);
+    loop {
+        let more = needs.iter().filter(|(_, needed)| needed.iter().any(|name| found.contains(name)));
+        let more: Vec<String> = more.map(|(name, _)| (*name).clone()).filter(|name| !found.contains(name)).collect();
+        if more.is_empty() {
+            return found;
+        }
+        found.extend(more);
+    }
+}
+
+#[test]
+fn a_new_camera_format_is_built_into_at_most_eight_crates() {
+    let found = rebuilt("cameras");
+    assert!(found.len() <= 8 && found.contains("cli"), "{found:?}");
+    for apart in ["adjust", "calibrate", "gate", "judge", "report"] {
+        assert!(!found.contains(apart), "{apart} needs camera formats");
     }
 }
 

@@ -132,14 +132,14 @@ fn every_reader_has_seeds_that_it_reads() {
     let formats: Vec<&str> = seeds(&READERS[0])
         .iter()
         .filter_map(|(_, bytes)| {
-            let sized = calibench_exchange::ReadOptions {
+            let sized = calibench_cameras::ReadOptions {
                 size: Some(calibench_model::camera::ImageSize { width: 640, height: 480 }),
-                ..calibench_exchange::ReadOptions::default()
+                ..calibench_cameras::ReadOptions::default()
             };
-            calibench_exchange::camera::parse_camera("f", bytes, &sized).ok().map(|file| file.format.name)
+            calibench_cameras::parse_camera("f", bytes, &sized).ok().map(|file| file.format.name)
         })
         .collect();
-    for format in calibench_exchange::camera::FORMATS {
+    for format in calibench_cameras::FORMATS {
         assert!(formats.contains(&format.name), "no seed of {}", format.name);
     }
 }

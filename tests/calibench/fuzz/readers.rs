@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
+use calibench_cameras::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
 use calibench_exchange::control::{parse_control, write_control};
-use calibench_exchange::photo::parse_photo;
 use calibench_exchange::points::parse_points;
 use calibench_exchange::stations::{parse_observed_stations, parse_stations};
 use calibench_exchange::write_points;
 use calibench_gate::{Ceilings, Cells, FigureSums, Kept, PointSums, Verdicts, read_baseline};
+use calibench_images::photo::parse_photo;
 use calibench_measure::Registry;
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::read_rows;
@@ -135,7 +135,7 @@ fn points(bytes: &[u8], _: &Path) -> Result<(), String> {
         let mut text = Vec::new();
         write_points(&mut text, found.points.rows()).expect("a Vec takes all");
         let again = parse_points(FILE, &text[..]).unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&text)));
-        let seen = |points: &calibench_exchange::Points| {
+        let seen = |points: &calibench_model::Points| {
             points.rows().map(|row| (row.image.to_owned(), row.target.to_owned(), row.start.position)).collect::<Vec<_>>()
         };
         assert_eq!(seen(&again.points), seen(&found.points));

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-use calibench_exchange::camera::read_camera;
+use calibench_cameras::read_camera;
 use calibench_scenario::Subject;
 use calibench_scenario::catalogue::Catalogue;
 
@@ -179,7 +179,7 @@ fn what_is_rendered_is_what_a_run_measures_in() {
         let folder = render(project.path(), "mine.toml", "out", &[]);
         let mut compared = 0;
         // Records keep what a page shows of it: its levels of 8 bits.
-        let levels = |path: &Path| calibench_exchange::read_photo(path).unwrap().image.to_u8();
+        let levels = |path: &Path| calibench_images::read_photo(path).unwrap().image.to_u8();
         let records = project.path().join("records/local/mine");
         for (path, _) in files(&records) {
             if path.extension().is_some_and(|end| end == "png") {

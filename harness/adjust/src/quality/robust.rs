@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use calibench_model::upper_median;
+
 use super::snooping::Found;
 use crate::AdjustError;
 use crate::network::Network;
@@ -47,13 +49,7 @@ impl Solution<'_> {
 ///
 /// Source: Rousseeuw & Leroy 1987.
 pub fn scale_of(pairs: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
-    let mut lengths: Vec<f64> = pairs.map(|[x, y]| x.hypot(y)).collect();
-    let middle = lengths.len() / 2;
-    if lengths.is_empty() {
-        return None;
-    }
-    let (_, median, _) = lengths.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(*median / MEDIAN)
+    Some(upper_median(pairs.map(|[x, y]| x.hypot(y)))? / MEDIAN)
 }
 
 /// [`adjust`](crate::adjust) with Huber's weights by a `bound` in standard deviations that the residuals show, whatever was said of the precision of image points.

@@ -1,8 +1,8 @@
 //! Networks of discs whose image points are centroids of polygons: no formula of the correction's own.
 
 use calibench_exchange::points::parse_points;
-use calibench_exchange::{ControlDisc, ControlRow, Points};
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::{ControlDisc, ControlRow, Points};
 use nalgebra::{Point3, Vector3};
 
 use crate::scenes::{Scene, agrees, board, lens, settings, wall};

@@ -1,7 +1,6 @@
 //! Which image points are of discs.
 
-use calibench_exchange::ControlDisc;
-use calibench_model::TargetKind;
+use calibench_model::{ControlDisc, TargetKind};
 use nalgebra::Vector3;
 
 use crate::{CalibrationError, Discs, Survey};

@@ -1,6 +1,7 @@
 //! Whether control points are where their file says.
 
 use calibench_adjust::{Datum, Network, ObjectPoint, Options, Solution, Status, Variance, adjust};
+use calibench_model::upper_median;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::Allowed;
@@ -74,9 +75,7 @@ fn cause(network: &Network, free: &Solution<'_>) -> String {
 
 /// The points whose shift is not to be explained by their standard deviations and those of the others.
 fn off(free: &Solution<'_>, shifts: &[Vector3<f64>]) -> Vec<usize> {
-    let mut lengths: Vec<f64> = shifts.iter().map(Vector3::norm).collect();
-    lengths.sort_by(f64::total_cmp);
-    let usual = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
+    let usual = upper_median(shifts.iter().map(Vector3::norm)).unwrap_or(0.0);
     let Ok(covariances) = free.covariances(Variance::Estimated) else { return Vec::new() };
     let is_off = |i: &usize| shifts[*i].norm() > OFF * usual.max(covariances.points[*i].trace().max(0.0).sqrt());
     (0..shifts.len()).filter(is_off).collect()

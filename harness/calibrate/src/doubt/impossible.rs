@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use calibench_adjust::ImageObservation;
-use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Fold, Ray, fold, implausible};
+use calibench_model::{PixelPoint, upper_median};
 
 use crate::placed::{cropped, in_use, is_outside};
 use crate::{Calibration, Doubt, Subject};
@@ -86,10 +86,7 @@ fn outside(calibration: &Calibration<'_>) -> Option<Doubt> {
 
 /// The length that half of the residuals reach, so that gross errors do not count, whether they were left out or not; where no operator leaves as much.
 pub(crate) fn half_of(residuals: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
-    let mut lengths: Vec<f64> = residuals.map(|[x, y]| x.hypot(y)).collect();
-    let middle = lengths.len() / 2;
-    let half = if lengths.is_empty() { 0.0 } else { *lengths.select_nth_unstable_by(middle, f64::total_cmp).1 };
-    (half > MOST_PX).then_some(half)
+    upper_median(residuals.map(|[x, y]| x.hypot(y))).filter(|half| *half > MOST_PX)
 }
 
 fn far(calibration: &Calibration<'_>) -> Option<Doubt> {

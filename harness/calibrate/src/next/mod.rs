@@ -4,7 +4,7 @@ mod candidates;
 mod field;
 
 use calibench_adjust::{Distance, Variance, frame_weight, image_information};
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{PixelPoint, Pose, upper_median};
 use nalgebra::{DMatrix, Point3};
 use rayon::prelude::*;
 
@@ -72,7 +72,7 @@ impl Calibration<'_> {
         let sigma = self.sigma_of(camera);
         let information = |pose: &Pose, points: &[Point3<f64>]| image_information(self.camera(camera), &names, pose, points, sigma);
         let taken = self.taken(camera).filter_map(|(pose, points)| Some(uncertain.with(&information(&pose, &points)?)));
-        let usual = median(taken.collect()).ok_or("no photograph determines its pose")?;
+        let usual = upper_median(taken).ok_or("no photograph determines its pose")?;
         let all: Vec<(Candidate, DMatrix<f64>)> = candidates(self.camera(camera), &field)
             .into_par_iter()
             .filter_map(|candidate| {
@@ -143,9 +143,4 @@ impl Uncertain {
         let more = self.factor.tr_mul(information) * &self.factor + DMatrix::identity(n, n);
         more.cholesky().map_or(f64::INFINITY, |more| more.solve(&self.weight).trace().max(0.0).sqrt())
     }
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

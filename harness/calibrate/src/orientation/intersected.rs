@@ -4,13 +4,14 @@ use std::collections::HashMap;
 use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Intersection, Search, Sight as Ray, Tolerance, intersect};
-use calibench_exchange::{POINT_QUALITY_COLUMNS, Row, StationRow, write_rows};
-use calibench_model::Pose;
+use calibench_exchange::POINT_QUALITY_COLUMNS;
+use calibench_files::{Row, write_rows};
 use calibench_model::camera::Camera;
+use calibench_model::{Pose, StationRow};
 use rayon::prelude::*;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-use super::precision::{MISFIT, Residuals};
+use super::precision::{MISFIT, Residuals, StatedPrecision};
 use crate::doubt::ALPHA;
 use crate::{CalibrationError, Survey};
 
@@ -50,15 +51,9 @@ struct Found {
 
 impl ObjectPoints {
     /// Intersects every target of `survey`. Of each image its camera, and its pose if it has one; rays that meet at less than `least_angle` (rad) are
-    /// parallel; with `tolerance_px` residuals that are longer are left out. `sigma_px` is that of an image coordinate; without it, that of the residuals
-    /// of all targets together: a target alone has too few.
-    pub fn of(
-        survey: &Survey,
-        cameras: &[Camera],
-        poses: &[Option<Pose>],
-        least_angle: f64,
-        (tolerance_px, sigma_px): (Option<f64>, Option<f64>),
-    ) -> Self {
+    /// parallel. Without a stated standard deviation of image coordinates, that of the residuals of all targets together counts: a target alone has too few.
+    pub fn of(survey: &Survey, cameras: &[Camera], poses: &[Option<Pose>], least_angle: f64, stated: StatedPrecision) -> Self {
+        let StatedPrecision { tolerance_px, sigma_px } = stated;
         let against = tolerance_px.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
         let one = |target: usize| {
             let seen = survey.of_target(target).map(|index| survey.sight(index));

@@ -11,4 +11,5 @@ mod resected;
 pub use intersected::{ObjectPoints, TOLD, poses_of};
 pub use misfit::Misfit;
 pub use pair::{LeftOutOfPair, Pair, PairError, PairTarget, Seen, Side};
+pub use precision::StatedPrecision;
 pub use resected::{ImageOrientation, Orientations, resect_images};

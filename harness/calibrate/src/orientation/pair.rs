@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use calibench_adjust::approximate::{ApproximateError, ModelPoint, RelativeOrientation, Search, Shape, Tolerance, orient_relatively};
 use calibench_diagnostics::nearest;
-use calibench_exchange::Points;
 use calibench_model::camera::Camera;
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{PixelPoint, Points, Pose, upper_median};
 use thiserror::Error;
 
 /// One of two images.
@@ -170,9 +169,7 @@ impl Pair {
 
     /// The median angle at which rays meet, rad.
     pub fn median_angle(&self) -> Option<f64> {
-        let mut angles: Vec<f64> = self.points().map(|point| point.angle).collect();
-        angles.sort_by(f64::total_cmp);
-        angles.get(angles.len() / 2).copied()
+        upper_median(self.points().map(|point| point.angle))
     }
 
     /// The correlation of elements `i` and `j` of the orientation: rotations about the right camera's x, y and z, then the base along its two axes.

@@ -2,7 +2,8 @@
 
 use std::io;
 
-use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_table};
+use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers};
+use calibench_files::write_table;
 use calibench_model::Pose;
 use nalgebra::{Matrix3, Point3};
 

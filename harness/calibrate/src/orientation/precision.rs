@@ -5,6 +5,15 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// Probability below which residuals do not fit.
 pub(super) const MISFIT: f64 = 1e-3;
 
+/// What is stated of image coordinates beforehand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StatedPrecision {
+    /// The residual beyond which a point is left out, px; `None`: all are kept.
+    pub tolerance_px: Option<f64>,
+    /// The standard deviation of an image coordinate, px; `None` where it is not known.
+    pub sigma_px: Option<f64>,
+}
+
 /// What residuals say of an image coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Residuals {

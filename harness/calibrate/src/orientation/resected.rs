@@ -3,12 +3,13 @@
 use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Resection, Search, Tolerance, resect};
-use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_table};
+use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers};
+use calibench_files::write_table;
 use calibench_model::camera::{Camera, CameraModel};
 use rayon::prelude::*;
 
 use super::misfit::{Misfit, ROUNDING};
-use super::precision::Residuals;
+use super::precision::{Residuals, StatedPrecision};
 use crate::placed::is_outside;
 use crate::{Survey, control_of};
 
@@ -45,9 +46,9 @@ pub struct Orientations {
     pub sigma_px: Option<f64>,
 }
 
-/// Resects every image of `survey` from its control points; `cameras` holds that of each image, `tolerance_px` is the residual beyond which a point is
-/// left out (`None`: all are kept), and `sigma_px` the standard deviation of an image coordinate, if it is known.
-pub fn resect_images(survey: &Survey, cameras: &[Camera], (tolerance_px, sigma_px): (Option<f64>, Option<f64>)) -> Orientations {
+/// Resects every image of `survey` from its control points; `cameras` holds that of each image.
+pub fn resect_images(survey: &Survey, cameras: &[Camera], stated: StatedPrecision) -> Orientations {
+    let StatedPrecision { tolerance_px, sigma_px } = stated;
     let known: Vec<_> = (0..survey.targets()).map(|target| survey.known(target)).collect();
     let against = tolerance_px.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
     let one = |image: usize| {

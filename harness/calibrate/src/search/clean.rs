@@ -2,6 +2,7 @@
 
 use calibench_adjust::approximate::{Control, Search, Tolerance, resect};
 use calibench_model::camera::Camera;
+use calibench_model::upper_median;
 use rayon::prelude::*;
 
 /// What a camera makes of the images: which points fit, image by image, and how badly they do.
@@ -29,14 +30,16 @@ fn fit(camera: &Camera, views: &[Vec<Control>]) -> Option<Fit> {
         let rejected = |index: usize| found.as_ref().is_some_and(|found| found.rejected.contains(&index));
         (0..view.len()).map(|index| !rejected(index)).collect()
     });
-    let mut badness: Vec<f64> = views
+    let badness: Vec<f64> = views
         .iter()
         .zip(&resected)
         .filter_map(|(view, found)| {
             found.as_ref().map(|found| found.sigma0 * view.len() as f64 / (view.len() - found.rejected.len()) as f64)
         })
         .collect();
-    badness.sort_by(f64::total_cmp);
-    let badness = (2 * badness.len() > views.len()).then(|| badness[badness.len() / 2])?;
+    if 2 * badness.len() <= views.len() {
+        return None;
+    }
+    let badness = upper_median(badness)?;
     Some(Fit { fits: fits.collect(), badness })
 }

@@ -2,7 +2,7 @@
 
 use calibench_adjust::approximate::{Control, interior_from_size};
 use calibench_model::camera::{Camera, CameraModel, OpenCvFisheye};
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{PixelPoint, Pose, upper_median};
 
 use super::clean::without_gross;
 use super::ladder::{BROWN, EQUIDISTANT, climbed};
@@ -100,9 +100,7 @@ fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
         let pose = pose_of(camera, view).ok();
         pose.map_or(f64::INFINITY, |pose| view.iter().map(|control| square(&pose, control)).sum::<f64>() / view.len() as f64)
     };
-    let mut squares: Vec<f64> = views.iter().map(of).collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).copied().unwrap_or(f64::INFINITY)
+    upper_median(views.iter().map(of)).unwrap_or(f64::INFINITY)
 }
 
 /// The minimum of the model asked for, from a lens of another one.

@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use calibench_exchange::{ControlRow, Points};
-use calibench_model::PixelPoint;
+use calibench_model::{ControlRow, PixelPoint, Points};
 
 use super::LENS;
 use super::raster::Raster;

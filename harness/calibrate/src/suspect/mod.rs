@@ -7,9 +7,8 @@ mod scale;
 mod shape;
 
 use calibench_diagnostics::plain;
-use calibench_exchange::{ControlRow, Points};
-use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, Ray};
+use calibench_model::{ControlRow, PixelPoint, Points};
 
 use crate::placed::is_outside;
 use crate::{Calibration, CalibrationError, Settings, prepare};

@@ -1,6 +1,6 @@
 //! Control that is a raster of columns and rows.
 
-use calibench_exchange::ControlRow;
+use calibench_model::ControlRow;
 
 /// Coordinates that differ by less than this share of the extent are the same.
 const SAME: f64 = 1e-6;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use calibench_adjust::approximate::similarity;
 use calibench_diagnostics::plain;
-use calibench_exchange::{ControlRow, Points};
+use calibench_model::{ControlRow, Points};
 use nalgebra::Point3;
 
 use crate::{BoardShape, Settings, prepare};

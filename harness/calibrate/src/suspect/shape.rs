@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use calibench_diagnostics::plain;
-use calibench_exchange::{ControlRow, Points};
+use calibench_model::{ControlRow, Points, upper_median};
 use nalgebra::Point3;
 
 use super::raster::Raster;
@@ -45,7 +45,7 @@ impl Found {
                     next[axis] += 1;
                     Some((by_place.get(&next)? - from).norm())
                 });
-                median(lengths.collect())
+                upper_median(lengths)
             };
             (0..raster.at[axis].len() - 1).map(step).collect::<Option<Vec<_>>>()
         };
@@ -55,7 +55,7 @@ impl Found {
     /// The found length of steps over the stated one: the median over steps that `counts` takes by their stated length.
     fn scale(&self, raster: &Raster, axis: usize, counts: impl Fn(f64) -> bool) -> Option<f64> {
         let stated = stated(raster, axis);
-        median(stated.iter().zip(&self.0[axis]).filter(|(stated, _)| counts(**stated)).map(|(stated, found)| found / stated).collect())
+        upper_median(stated.iter().zip(&self.0[axis]).filter(|(stated, _)| counts(**stated)).map(|(stated, found)| found / stated))
     }
 }
 
@@ -110,9 +110,4 @@ fn stretch(raster: &Raster, control: &[ControlRow], found: &Found) -> Option<(&'
     let what =
         format!("the board is {} times as long along its rows (X) as is stated, beside its columns (Y): how was it printed?", plain(ratio));
     Some(("stretch", what, raster.with(&at, control)))
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

@@ -1,9 +1,8 @@
 //! Networks drawn at random, by class: what is photographed, from where, with which lens.
 
-use calibench_exchange::ControlRow;
-use calibench_exchange::points::{Points, parse_points};
-use calibench_model::Pose;
+use calibench_exchange::points::parse_points;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye, fold};
+use calibench_model::{ControlRow, Points, Pose};
 use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand_chacha::ChaCha8Rng;

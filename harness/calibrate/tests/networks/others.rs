@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use calibench_calibrate::{Optics, Settings, prepare};
-use calibench_exchange::{Points, read_control, read_points};
+use calibench_exchange::{read_control, read_points};
+use calibench_model::Points;
 use calibench_model::camera::{CameraModel, ImageSize};
 
 /// Name, size, RMS (2D) and fx of OpenCV, px.

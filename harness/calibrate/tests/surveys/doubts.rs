@@ -2,9 +2,8 @@
 
 use calibench_adjust::Use;
 use calibench_calibrate::{BoardShape, Calibration, Checked, Prepared, Settings, Subject, Verdict, prepare};
-use calibench_exchange::{ControlRow, PointRef, Points};
 use calibench_model::camera::{Camera, CameraModel, OpenCvFisheye};
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{ControlRow, PixelPoint, PointRef, Points, Pose};
 use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
 

@@ -3,9 +3,8 @@
 use calibench_calibrate::{Calibration, CalibrationError, Optics, Prepared, Settings, prepare};
 use calibench_exchange::control::parse_control;
 use calibench_exchange::points::parse_points;
-use calibench_exchange::{ControlRow, Points};
-use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
+use calibench_model::{ControlRow, Points, Pose};
 use nalgebra::{Point3, Vector3};
 
 pub const SIZE: ImageSize = ImageSize { width: 1600, height: 1200 };

@@ -1,7 +1,7 @@
 //! Exterior orientations of images whose points are right, wrong or other points' own.
 
 use calibench_calibrate::Survey;
-use calibench_calibrate::orientation::{Orientations, resect_images};
+use calibench_calibrate::orientation::{Orientations, StatedPrecision, resect_images};
 use calibench_exchange::points::parse_points;
 use calibench_model::Pose;
 use nalgebra::{Point3, Vector3};
@@ -22,7 +22,8 @@ fn oriented(scene: &Scene, rows: &Rows, tolerance: Option<f64>, sigma: Option<f6
     let text: String = rows.iter().map(|(image, target, x, y)| format!("{image},{target},{x},{y}\n")).collect();
     let points = parse_points("points.csv", format!("image,target,x,y\n{text}").as_bytes()).unwrap().points;
     let survey = Survey::new(points, &scene.known()).unwrap();
-    let found = resect_images(&survey, &vec![scene.camera; survey.images.len()], (tolerance, sigma));
+    let found =
+        resect_images(&survey, &vec![scene.camera; survey.images.len()], StatedPrecision { tolerance_px: tolerance, sigma_px: sigma });
     assert!(found.failed.is_empty(), "{:?}", found.failed);
     (survey, found)
 }

@@ -1,9 +1,8 @@
 //! Inputs of known kind, drawn anew with each seed: sound ones, and such as are something else than they say.
 
 use calibench_calibrate::{BoardShape, CalibrationError, DatumChoice, Optics, Settings, Suspected, calibrate, prepare, suspected};
-use calibench_exchange::{ControlRow, Points};
 use calibench_model::camera::{Camera, DoubleSphere, ImageSize, OpenCv, OpenCvFisheye};
-use calibench_model::{PixelPoint, Pose};
+use calibench_model::{ControlRow, PixelPoint, Points, Pose};
 use nalgebra::{Point3, Vector3};
 
 use crate::network::{SIZE, Scene, board, lens, optics, settings, wall};

@@ -1,10 +1,9 @@
 //! Object points from two oriented images each.
 
 use calibench_calibrate::Survey;
-use calibench_calibrate::orientation::ObjectPoints;
-use calibench_exchange::ControlRow;
+use calibench_calibrate::orientation::{ObjectPoints, StatedPrecision};
 use calibench_exchange::control::parse_control;
-use calibench_model::Pose;
+use calibench_model::{ControlRow, Pose};
 
 use crate::network::{Scene, lens, wall};
 
@@ -18,7 +17,7 @@ fn scene(seed: u64) -> Scene {
 fn points(scene: &Scene, sigma_px: Option<f64>) -> (Survey, ObjectPoints) {
     let survey = Survey::without_control(scene.points());
     let poses: Vec<Option<Pose>> = scene.poses.iter().copied().map(Some).collect();
-    let found = ObjectPoints::of(&survey, &[scene.camera; 2], &poses, 1e-3, (None, sigma_px));
+    let found = ObjectPoints::of(&survey, &[scene.camera; 2], &poses, 1e-3, StatedPrecision { sigma_px, ..Default::default() });
     (survey, found)
 }
 
@@ -57,7 +56,7 @@ fn errors_are_as_large_as_the_standard_deviations_say() {
 #[test]
 fn what_does_not_fit_is_counted_and_noted() {
     let exact = scene(3);
-    let mut points = calibench_exchange::Points::default();
+    let mut points = calibench_model::Points::default();
     for (index, mut row) in exact.points().rows().enumerate() {
         // Across the epipolar lines, which run along x: y of one image.
         row.start.position.y += if index == 5 { 12.0 } else { 0.0 };
@@ -65,7 +64,8 @@ fn what_does_not_fit_is_counted_and_noted() {
     }
     let survey = Survey::without_control(points);
     let poses: Vec<Option<Pose>> = exact.poses.iter().copied().map(Some).collect();
-    let found = ObjectPoints::of(&survey, &[exact.camera; 2], &poses, 1e-3, (None, Some(NOISE)));
+    let found =
+        ObjectPoints::of(&survey, &[exact.camera; 2], &poses, 1e-3, StatedPrecision { sigma_px: Some(NOISE), ..Default::default() });
     assert_eq!(found.misfits(), 1);
     let both = (0..survey.targets()).filter(|&target| survey.of_target(target).count() == 2).count();
     assert!(

@@ -1,7 +1,6 @@
 //! Standard deviations from leaving images out.
 
-use calibench_exchange::Points;
-use calibench_model::Pose;
+use calibench_model::{Points, Pose};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 

@@ -95,7 +95,7 @@ fn the_camera_of_a_bent_board_is_that_of_a_flat_one() {
 fn gross_errors_neither_hide_a_bend_nor_feign_one() {
     for (bend, is_bent) in [([0.0; 3], false), ([1.0, 0.0, 0.0], true)] {
         let (flat, scene) = (board(lens()), bent(bend, NOISE, 5));
-        let (whole, mut points) = (scene.points(), calibench_exchange::Points::default());
+        let (whole, mut points) = (scene.points(), calibench_model::Points::default());
         for (index, mut row) in whole.rows().enumerate() {
             row.start.position.x += if index % 40 == 7 { 8.0 } else { 0.0 };
             points.push(row.image, row.target, row.start);

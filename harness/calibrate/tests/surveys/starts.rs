@@ -1,8 +1,8 @@
 //! Where a calibration starts, and that it arrives from there.
 
 use calibench_calibrate::{CalibrationError, Optics, Settings};
-use calibench_exchange::{ObservedStation, StationRow};
 use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, OpenCvFisheye};
+use calibench_model::{ObservedStation, StationRow};
 
 use crate::network::{SIZE, agrees, board, lens, optics, settings, wall};
 
@@ -112,7 +112,7 @@ fn a_tie_point_of_one_image_is_left_out() {
     scene.control = 47;
     let whole = scene.points();
     let last = "t47";
-    let mut points = calibench_exchange::Points::default();
+    let mut points = calibench_model::Points::default();
     let mut seen = 0;
     for row in whole.rows() {
         seen += usize::from(row.target == last);
@@ -140,7 +140,7 @@ fn station(scene: &crate::network::Scene, image: usize, name: &str) -> ObservedS
 fn an_observed_pose_stands_in_for_a_resection() {
     let scene = wall(lens());
     let whole = scene.points();
-    let mut points = calibench_exchange::Points::default();
+    let mut points = calibench_model::Points::default();
     for row in whole.rows() {
         let few = ["t0", "t9", "t20"].contains(&row.target);
         if row.image != "image_2.png" || few {

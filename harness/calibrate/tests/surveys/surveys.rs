@@ -48,7 +48,7 @@ fn a_stated_standard_deviation_is_taken() {
 #[test]
 fn gross_errors_are_looked_for_when_asked() {
     let scene = noisy(board(lens()), 0.05);
-    let (whole, mut points) = (scene.points(), calibench_exchange::Points::default());
+    let (whole, mut points) = (scene.points(), calibench_model::Points::default());
     for (index, mut row) in whole.rows().enumerate() {
         row.start.position.x += if index == 100 { 2.0 } else { 0.0 };
         points.push(row.image, row.target, row.start);

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use calibench_exchange::camera::read_camera;
+use calibench_cameras::read_camera;
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
 use calibench_random::{Key, Purpose, stream};

@@ -5,10 +5,12 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use calibench_exchange::camera::{NamedCamera, format_named, write_camera};
-use calibench_exchange::{POSE_COLUMNS, station_numbers, write_png, write_table};
+use calibench_cameras::{format_named, write_camera};
+use calibench_exchange::{POSE_COLUMNS, station_numbers};
+use calibench_files::write_table;
+use calibench_images::write_png;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
-use calibench_model::{Image, Pose};
+use calibench_model::{Image, NamedCamera, Pose};
 use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand_chacha::rand_core::Rng;

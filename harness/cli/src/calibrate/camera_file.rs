@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use calibench_calibrate::Calibration;
-use calibench_exchange::OutputFile;
-use calibench_exchange::camera::conversion::ConversionError;
-use calibench_exchange::camera::fit::losses;
-use calibench_exchange::camera::for_file::{FileCamera, FileCameraError, beside, for_file, one_file_for, own_file};
-use calibench_exchange::camera::{NamedCamera, camera_bytes, write_camera};
+use calibench_cameras::conversion::ConversionError;
+use calibench_cameras::fit::losses;
+use calibench_cameras::for_file::{FileCamera, FileCameraError, beside, for_file, one_file_for, own_file};
+use calibench_cameras::{camera_bytes, write_camera};
+use calibench_files::OutputFile;
+use calibench_model::NamedCamera;
 use calibench_model::convert::ConvertError;
 
 use super::super::convert::{advise, no_target, size_of};

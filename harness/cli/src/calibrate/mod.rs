@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use calibench_calibrate::{
     BoardShape, Calibration, CalibrationError, DatumChoice, Discs, MOST_TRIED, Settings, Suspected, calibrate, prepare, suspected,
 };
-use calibench_exchange::{
-    ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, Reading, read_control, read_observed_stations,
-};
-use calibench_model::CornerPoint;
+use calibench_cameras::inputs_of;
+use calibench_exchange::{PointFile, read_control, read_observed_stations};
+use calibench_files::{OutputFile, OutputFolder};
+use calibench_images::Reading;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
-use calibench_photographs::{Chessboard, Corners, Photo, Reader, board_of};
+use calibench_model::{ControlRow, CornerPoint, LostRows, Points};
+use calibench_photographs::{Chessboard, Corners, Photo, Reader};
 use calibench_report::calibration::{Pictured, scene_ply, summary, write_report};
 use calibench_report::json::CalibrationAnswer;
 use clap::Args;
@@ -21,6 +22,7 @@ use super::convert::positive;
 use super::photos::AsRead;
 use super::reading::Origin;
 use super::{inputs, output, reading};
+use crate::board::board_of;
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
@@ -130,7 +132,7 @@ struct Input {
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
-        let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
+        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("calibrate", None))).transpose()?;
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, &inputs)).transpose()?;

@@ -1,6 +1,7 @@
 //! A board's points in photographs, with a word about what was not found.
 
-use calibench_exchange::{LostRow, Reading};
+use calibench_images::Reading;
+use calibench_model::LostRow;
 use calibench_photographs::measured::Corners;
 use calibench_photographs::{Finder, Reader};
 

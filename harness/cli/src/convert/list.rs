@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 
-use calibench_exchange::camera::{CameraFile, CameraFileError, CameraFormat, CameraList, ListWriter, format_named};
+use calibench_cameras::{CameraFile, CameraFileError, CameraFormat, CameraList, ListWriter, format_named};
 use rayon::prelude::*;
 
 use super::said::Said;

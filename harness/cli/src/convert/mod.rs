@@ -6,12 +6,13 @@ mod said;
 use std::io;
 use std::path::PathBuf;
 
+use calibench_cameras::conversion::{ConversionError, Converted, converted};
+use calibench_cameras::fit::{FitError, losses};
+use calibench_cameras::target::{Given, TargetError, goal};
+use calibench_cameras::{CameraFormat, camera_bytes, inputs_of};
 use calibench_diagnostics::nearest;
-use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
-use calibench_exchange::camera::fit::{FitError, losses};
-use calibench_exchange::camera::target::{Given, TargetError, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_bytes};
-use calibench_exchange::{Inputs, OutputFile, OutputFolder};
+use calibench_files::{Inputs, OutputFile, OutputFolder};
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
@@ -83,7 +84,7 @@ pub fn region(radius: Option<f64>) -> Region {
 
 impl Convert {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.file]);
+        let inputs = inputs_of([&self.file]);
         let cameras_file = self.cameras_file(&inputs)?;
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         // An answer tells every camera apart, and so has them all in memory.

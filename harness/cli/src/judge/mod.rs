@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
-use calibench_exchange::{Inputs, Reading, read_control};
-use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, published_camera, stated_sigma, usual_models};
+use calibench_cameras::{inputs_of, published_camera};
+use calibench_exchange::read_control;
+use calibench_images::Reading;
+use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, stated_sigma, usual_models};
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
-use calibench_photographs::{Chessboard, board_of};
+use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
 use calibench_report::json::JudgementAnswer;
 use calibench_report::judgement::{in_use as in_words, section, verdict};
@@ -18,6 +20,7 @@ use super::context::Context;
 use super::convert::positive;
 use super::photos::AsRead;
 use super::{output, reading};
+use crate::board::board_of;
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
@@ -92,7 +95,7 @@ impl Judge {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
-        let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
+        let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("judge", None))).transpose()?;
         let (material, doubts, reading) = self.material(context)?;
         let size = material.size;

@@ -1,6 +1,7 @@
 //! The page of a judgement, its pictures and its numbers.
 
-use calibench_exchange::{NewFolder, Reading};
+use calibench_files::NewFolder;
+use calibench_images::Reading;
 use calibench_judge::{CornerFile, Material, Options, Remaining, remaining};
 use calibench_model::boards::{Board, Chessboard};
 use calibench_model::escape::{self, code};

@@ -1,7 +1,7 @@
 //! A board's points in photographs, by several methods.
 
 use calibench_calibrate::choice::HALF;
-use calibench_exchange::Reading;
+use calibench_images::Reading;
 use calibench_judge::{JudgementError, Material, usual_methods};
 use calibench_model::TargetKind;
 use calibench_model::boards::Board;

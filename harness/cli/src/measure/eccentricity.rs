@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use calibench_calibrate::orientation::poses_of;
 use calibench_calibrate::{Discs, Offset, Survey, offsets};
-use calibench_exchange::{Outcome, Points, read_control, read_stations};
-use calibench_model::PixelPoint;
+use calibench_exchange::{Outcome, read_control, read_stations};
 use calibench_model::camera::ImageSize;
+use calibench_model::{PixelPoint, Points};
 use clap::Args;
 
 use crate::camera_files::{CameraFiles, ImagesFile};

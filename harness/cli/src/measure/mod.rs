@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::Offset;
-use calibench_exchange::{Inputs, MeasuredRow, Outcome, Points, write_measured};
+use calibench_cameras::inputs_of;
+use calibench_exchange::{MeasuredRow, Outcome, write_measured};
 use calibench_measure::Configured;
-use calibench_measure::kinds::{all_busy, unmeasured};
-use calibench_model::TargetKind;
+use calibench_measure::coverage::{all_busy, unmeasured};
+use calibench_model::{Points, TargetKind};
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use calibench_report::json::{MeasurementAnswer, MeasurementCounts};
 use clap::Args;
@@ -48,7 +49,7 @@ pub struct Measure {
 
 impl Measure {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new(self.photos.iter().chain([&self.points]).chain(self.eccentricity.paths()));
+        let inputs = inputs_of(self.photos.iter().chain([&self.points]).chain(self.eccentricity.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let methods = context.methods(&self.methods, Pictured::Photographs)?;
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{ApproximateError, Tolerance};
 use calibench_calibrate::orientation::{Pair, PairError, Seen, Side};
-use calibench_exchange::{Inputs, Points};
+use calibench_cameras::inputs_of;
 use calibench_model::camera::Camera;
-use calibench_model::escape;
+use calibench_model::{Points, escape};
 use calibench_report::orientation;
 use clap::Args;
 
@@ -59,7 +59,7 @@ pub struct Orient {
 
 impl Orient {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.points, &self.camera].into_iter().chain(&self.camera_right));
+        let inputs = inputs_of([&self.points, &self.camera].into_iter().chain(&self.camera_right));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let poses = output::table("--poses", self.poses.as_deref(), &inputs)?;
         output::distinct(("-o", output.as_ref()), ("--poses", poses.as_ref()))?;

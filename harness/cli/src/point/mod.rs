@@ -4,9 +4,11 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use calibench_cameras::inputs_of;
 use calibench_exchange::points::parse_points;
-use calibench_exchange::{ControlRow, Inputs, OutputFile, bounded, read_control};
-use calibench_model::TargetKind;
+use calibench_exchange::read_control;
+use calibench_files::{OutputFile, bounded};
+use calibench_model::{ControlRow, TargetKind};
 use calibench_photographs::PhotographsError;
 use calibench_photographs::names::{names, once};
 use calibench_point::{Content, Loaded, write_page};
@@ -79,7 +81,7 @@ impl Point {
             return Err(Failure::input(format!("{option}: is of the server; give --serve in place of -o")));
         }
         let cameras = self.cameras.iter().map(ImagesFile::path);
-        let inputs = Inputs::new(self.photos.iter().chain(&self.control).chain(&self.measured).chain(cameras));
+        let inputs = inputs_of(self.photos.iter().chain(&self.control).chain(&self.measured).chain(cameras));
         let output = self.output.as_deref().map(|path| output::page("-o", path, &inputs)).transpose()?;
         let names = self.names()?;
         let control = self.control.as_deref().map(read_control).transpose()?.unwrap_or_default();

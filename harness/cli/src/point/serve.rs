@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::time::Duration;
 
-use calibench_exchange::{ControlRow, Inputs};
+use calibench_files::Inputs;
+use calibench_model::ControlRow;
 use calibench_model::camera::CameraModel;
 use calibench_point::{Content, Kept, Served, Server};
 

@@ -1,6 +1,6 @@
 //! A whole rectangle of corners in the image: is it a board, which way round.
 
-use calibench_model::Image;
+use calibench_model::{Image, upper_median};
 
 use super::complete::extent;
 use super::grow::Grid;
@@ -150,9 +150,7 @@ impl Board {
 
     /// Whether its squares are so large that one more would be seen.
     fn is_resolved(&self) -> bool {
-        let mut steps: Vec<f64> = (0..self.corners.len()).map(|index| self.step(index)).collect();
-        steps.sort_by(f64::total_cmp);
-        steps[steps.len() / 2] > RESOLVED
+        upper_median((0..self.corners.len()).map(|index| self.step(index))).is_some_and(|step| step > RESOLVED)
     }
 
     /// Whether these are the corners of a board, all of them.

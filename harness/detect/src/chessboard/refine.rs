@@ -1,6 +1,6 @@
 //! Corners to a fraction of a pixel.
 
-use calibench_model::Image;
+use calibench_model::{Image, upper_median};
 
 use super::level::{Pyramid, scaled};
 use crate::meeting::Meeting;
@@ -34,17 +34,14 @@ const BINOMIAL: [f64; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
 /// `steps`: the shorter step from each to a neighbour, px; `factor`: px of the image to one of the level in which they were found.
 pub(crate) fn refined(pyramid: &Pyramid, corners: &[Point], steps: &[f64], around: Around, factor: f64) -> Vec<Point> {
     let mut best = (f64::INFINITY, corners.to_vec());
-    let mut sorted = steps.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let Some(step) = sorted.get(sorted.len() / 2) else { return best.1 };
+    let Some(step) = upper_median(steps.iter().copied()) else { return best.1 };
     for (image, of) in pyramid.up_to((2.0 * factor).max(1.0)).filter(|(_, of)| *of == 1.0 || step / of >= around.resolved) {
         let met = |(at, step): (&Point, &f64)| {
             let found = meeting(image, scaled(*at, 1.0 / of), step / of, around, factor / of);
             found.map_or((*at, f64::INFINITY), |(at, variance)| (scaled(at, of), variance))
         };
-        let (moved, mut variances): (Vec<Point>, Vec<f64>) = corners.iter().zip(steps).map(met).unzip();
-        variances.sort_by(f64::total_cmp);
-        let middle = variances[variances.len() / 2].sqrt();
+        let (moved, variances): (Vec<Point>, Vec<f64>) = corners.iter().zip(steps).map(met).unzip();
+        let middle = upper_median(variances).map_or(f64::INFINITY, f64::sqrt);
         if middle < best.0 {
             best = (middle, moved);
         }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use calibench_model::upper_median;
+
 use super::complete::{inferred, sought};
 use super::grow::{Grid, Place, WAYS, moved};
 use super::level::{Level, Pyramid, scaled};
@@ -66,9 +68,7 @@ impl Sheet {
         let places: Vec<Point> = corners.values().copied().collect();
         let found = refined(pyramid, &places, &lengths, reading.around, level.factor);
         let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
-        let mut sorted = lengths;
-        sorted.sort_by(f64::total_cmp);
-        if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < reading.near) {
+        if upper_median(lengths).is_some_and(|middle| middle < reading.near) {
             corners = smoothed(&corners);
         } else {
             straighten(&mut corners);
@@ -84,9 +84,7 @@ impl Sheet {
         let sign = if 2 * all.iter().filter(|(_, contrast)| *contrast > 0.0).count() > all.len() { 1.0 } else { -1.0 };
         let kept: BTreeMap<Place, f64> = all.into_iter().filter(|(_, contrast)| contrast * sign > 0.0).collect();
         let corners: BTreeMap<Place, Point> = corners.into_iter().filter(|(place, _)| kept.contains_key(place)).collect();
-        let mut sizes: Vec<f64> = kept.values().map(|contrast| contrast.abs()).collect();
-        sizes.sort_by(f64::total_cmp);
-        let contrast = *sizes.get(sizes.len() / 2)?;
+        let contrast = upper_median(kept.values().map(|contrast| contrast.abs()))?;
         Some(Self { corners, sign, contrast })
     }
 

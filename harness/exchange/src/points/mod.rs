@@ -1,22 +1,14 @@
 //! Point files: image coordinates as CSV.
 
-mod lost;
-mod names;
 mod parallel;
-mod table;
 
 use std::io::Read;
 use std::path::Path;
 
-use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind, escape};
+use calibench_files::bounded;
+use calibench_model::{Affine, Covariance, LostRows, PixelPoint, PointRef, Points, Start, TargetKind, escape};
 use csv::StringRecord;
 use thiserror::Error;
-
-use crate::bounded;
-
-pub use lost::{LostRow, LostRows};
-pub use names::Names;
-pub use table::{Groups, PointRef, Points};
 
 /// The columns that must be there; `x` and `y` in px, as in [`PixelPoint`].
 pub const REQUIRED: [&str; 4] = ["image", "target", "x", "y"];
@@ -26,17 +18,6 @@ pub const COVARIANCE: [&str; 3] = ["sxx", "sxy", "syy"];
 pub const SHAPE: [&str; 5] = ["kind", "axx", "axy", "ayx", "ayy"];
 /// What `measure` adds: when its output is read again, `status` says which rows have a position; the others are read over.
 pub const RESULT: [&str; 3] = ["method", "status", "reason"];
-
-/// One row of a point file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointRow {
-    /// The image's file name.
-    pub image: String,
-    /// The target's name.
-    pub target: String,
-    /// Position, kind, affine start and covariance.
-    pub start: Start,
-}
 
 /// The points of a file.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use super::{Check, LostRows, PointFile, Points, most_rows, read_rows, reader};
-use crate::pipelined::pipelined;
+use calibench_files::pipelined::pipelined;
 
 /// Bytes that one thread reads at a time.
 const PIECE: usize = 1 << 19;

@@ -1,3 +1,5 @@
+use calibench_model::PointRow;
+
 use super::*;
 use proptest::prelude::*;
 

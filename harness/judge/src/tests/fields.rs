@@ -1,6 +1,6 @@
 //! Points of known coordinates in place of a board.
 
-use calibench_exchange::ControlRow;
+use calibench_model::ControlRow;
 use calibench_records::judgement::measure;
 
 use super::*;

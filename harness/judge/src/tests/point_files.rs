@@ -1,8 +1,7 @@
 //! Point files in the place of operators.
 
 use calibench_exchange::points::parse_points;
-use calibench_exchange::{PointRef, PointRow};
-use calibench_model::Start;
+use calibench_model::{PointRef, PointRow, Start};
 
 use super::*;
 use crate::Expected;

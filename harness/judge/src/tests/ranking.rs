@@ -1,6 +1,7 @@
 //! Which operator and model come out best, and what is said when nothing can.
 
-use calibench_exchange::camera::{NamedCamera, ParameterCovariance};
+use calibench_model::NamedCamera;
+use calibench_model::named_camera::ParameterCovariance;
 use calibench_records::judgement::{measure, write_rows};
 use calibench_records::points::RunInfo;
 

@@ -5,7 +5,8 @@ use calib_targets_chessboard::{ChessboardDetector, ChessboardParams, default_che
 use calibench_model::boards::{Board, Charuco, Chessboard};
 use calibench_model::{Image, PixelPoint, Rejection};
 
-use crate::finder::{BoardFinder, BoardPointFound, Finds, Sought};
+use crate::finder::{BoardFinder, BoardPointFound, Sought};
+use crate::operator::Finds;
 use crate::registry::{Build, Method};
 
 /// The crates' version, as locked.

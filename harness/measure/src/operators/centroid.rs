@@ -4,7 +4,7 @@ use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
 use crate::blob::{Blob, Polarity, Segmentation};
 use crate::operator::{Operator, window_centre};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 
 /// Centroid of the connected pixels at the start that are beyond a threshold: plain, or weighted by how far they are beyond it.
@@ -20,35 +20,12 @@ pub struct Centroid {
     centre: fn(&Blob) -> PixelPoint,
 }
 
-const WINDOW: Parameter = Parameter {
-    name: "window",
-    about: "side of the window, px",
-    domain: Domain::Odd { min: 3, max: 101 },
-    default: 21.0,
-    always_shown: true,
-};
-const THRESHOLD: Parameter = Parameter {
-    name: "threshold",
-    about: "threshold, as a fraction of full scale; 0 for Otsu's",
-    domain: Domain::Real { min: 0.0, max: 1.0 },
-    default: 0.0,
-    always_shown: false,
-};
-const POLARITY: Parameter = Parameter {
-    name: "polarity",
-    about: "0: the target is what most of the window's border is not; 1: it is dark; 2: it is light",
-    domain: Domain::Whole { min: 0, max: 2 },
-    default: 0.0,
-    always_shown: false,
-};
+const WINDOW: Parameter = Parameter::odd("window", "side of the window, px", [3, 101], 21.0).always_shown();
+const THRESHOLD: Parameter = Parameter::real("threshold", "threshold, as a fraction of full scale; 0 for Otsu's", [0.0, 1.0], 0.0);
+const POLARITY: Parameter =
+    Parameter::whole("polarity", "0: the target is what most of the window's border is not; 1: it is dark; 2: it is light", [0, 2], 0.0);
 const fn enlarge(default: f64) -> Parameter {
-    Parameter {
-        name: "enlarge",
-        about: "how many times the window is enlarged before the threshold",
-        domain: Domain::Whole { min: 1, max: 4 },
-        default,
-        always_shown: false,
-    }
+    Parameter::whole("enlarge", "how many times the window is enlarged before the threshold", [1, 4], default)
 }
 
 /// The entry of the grey centroid.

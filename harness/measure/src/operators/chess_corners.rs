@@ -6,7 +6,7 @@ use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use chess_corners::{Detector, DetectorConfig, ImageRefiner};
 
 use crate::operator::{Operator, nearest_detected};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 
 /// The crate's version, as locked.
@@ -30,27 +30,9 @@ pub struct ChessCorners {
 }
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "detector",
-        about: "0: ChESS; 1: Radon",
-        domain: Domain::Whole { min: 0, max: 1 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "refiner",
-        about: "0: the detector's own position; 1: the crate's saddle point",
-        domain: Domain::Whole { min: 0, max: 1 },
-        default: 1.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "radius",
-        about: "how far a detection may be from the start, px",
-        domain: Domain::Real { min: 0.5, max: 30.0 },
-        default: 5.0,
-        always_shown: false,
-    },
+    Parameter::whole("detector", "0: ChESS; 1: Radon", [0, 1], 0.0),
+    Parameter::whole("refiner", "0: the detector's own position; 1: the crate's saddle point", [0, 1], 1.0),
+    Parameter::real("radius", "how far a detection may be from the start, px", [0.5, 30.0], 5.0),
 ];
 
 /// The method's entry.

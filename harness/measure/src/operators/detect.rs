@@ -4,7 +4,8 @@ use calibench_detect::VERSION;
 use calibench_model::boards::Board;
 use calibench_model::{Image, Rejection};
 
-use crate::finder::{BoardFinder, BoardPointFound, Finds, Sought};
+use crate::finder::{BoardFinder, BoardPointFound, Sought};
+use crate::operator::Finds;
 use crate::registry::{Build, Method};
 
 /// The points of a board as `calibench detect` finds them, before any operator measures them: of a board in view in part those that are seen, of every kind of board.

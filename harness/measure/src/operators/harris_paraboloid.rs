@@ -5,7 +5,7 @@ use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use crate::harris::{Harris, Strengths, smooth};
 use crate::operator::{Operator, window_centre};
 use crate::paraboloid::Weights;
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 
 /// Harris paraboloid: the strongest pixel of the window, refined by the maximum of a paraboloid through its 3 x 3 strengths.
@@ -50,42 +50,14 @@ impl Refinement {
     }
 }
 
-const WINDOW: Parameter = Parameter {
-    name: "window",
-    about: "side of the window in which the strongest pixel is sought, px",
-    domain: Domain::Odd { min: 3, max: 31 },
-    default: 11.0,
-    always_shown: true,
-};
-const K: Parameter = Parameter {
-    name: "k",
-    about: "scale of the weights exp(-d^2/k^2) of the fit, px",
-    domain: Domain::Real { min: 1e-3, max: 1e3 },
-    default: 0.2,
-    always_shown: false,
-};
-const SIGMA: Parameter = Parameter {
-    name: "sigma",
-    about: "standard deviation of the integration Gaussian, px",
-    domain: Domain::Real { min: 0.1, max: 10.0 },
-    default: 1.0,
-    always_shown: false,
-};
-const ALPHA: Parameter = Parameter {
-    name: "alpha",
-    about: "weight of the squared trace in the strength",
-    domain: Domain::Real { min: 0.0, max: 0.24 },
-    default: 0.04,
-    always_shown: false,
-};
+const WINDOW: Parameter =
+    Parameter::odd("window", "side of the window in which the strongest pixel is sought, px", [3, 31], 11.0).always_shown();
+const K: Parameter = Parameter::real("k", "scale of the weights exp(-d^2/k^2) of the fit, px", [1e-3, 1e3], 0.2);
+const SIGMA: Parameter = Parameter::real("sigma", "standard deviation of the integration Gaussian, px", [0.1, 10.0], 1.0);
+const ALPHA: Parameter = Parameter::real("alpha", "weight of the squared trace in the strength", [0.0, 0.24], 0.04);
 
-const DERIVATION: Parameter = Parameter {
-    name: "derivation",
-    about: "standard deviation of the derivation Gaussian, px; 0: Sobel gradients",
-    domain: Domain::Real { min: 0.0, max: 5.0 },
-    default: 0.0,
-    always_shown: false,
-};
+const DERIVATION: Parameter =
+    Parameter::real("derivation", "standard deviation of the derivation Gaussian, px; 0: Sobel gradients", [0.0, 5.0], 0.0);
 
 /// The method's entry.
 pub fn method() -> Method {

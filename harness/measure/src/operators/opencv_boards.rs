@@ -1,37 +1,18 @@
 //! OpenCV's finders of boards, declared here so that builds without OpenCV know their names and parameters, too.
 
-use crate::parameter::{Domain, Parameter};
+use crate::parameter::Parameter;
 use crate::registry::{Build, Method};
 
 /// The entries of all of them: what makes each, or why it is not here, and OpenCV's own version.
 pub const ALL: [fn(Build, String) -> Method; 4] = [chessboard, charuco, aprilgrid, circles];
 
-const SB: &[Parameter] = &[Parameter {
-    name: "sb",
-    about: "0: findChessboardCorners, without cornerSubPix after it; 1: findChessboardCornersSB",
-    domain: Domain::Whole { min: 0, max: 1 },
-    default: 0.0,
-    always_shown: false,
-}];
+const SB: &[Parameter] =
+    &[Parameter::whole("sb", "0: findChessboardCorners, without cornerSubPix after it; 1: findChessboardCornersSB", [0, 1], 0.0)];
 
-const CORRECTED: Parameter = Parameter {
-    name: "corrected",
-    about: "1: what is known of its origin of the pixel is taken out",
-    domain: Domain::Whole { min: 0, max: 1 },
-    default: 0.0,
-    always_shown: false,
-};
+const CORRECTED: Parameter = Parameter::whole("corrected", "1: what is known of its origin of the pixel is taken out", [0, 1], 0.0);
 
-const REFINED: &[Parameter] = &[
-    Parameter {
-        name: "refinement",
-        about: "cornerRefinementMethod: 0 none, 1 subpix, 2 contour, 3 apriltag",
-        domain: Domain::Whole { min: 0, max: 3 },
-        default: 0.0,
-        always_shown: false,
-    },
-    CORRECTED,
-];
+const REFINED: &[Parameter] =
+    &[Parameter::whole("refinement", "cornerRefinementMethod: 0 none, 1 subpix, 2 contour, 3 apriltag", [0, 3], 0.0), CORRECTED];
 
 /// OpenCV's chessboards.
 pub fn chessboard(build: Build, version: String) -> Method {

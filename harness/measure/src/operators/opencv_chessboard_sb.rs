@@ -1,15 +1,15 @@
 //! `opencv_chessboard_sb`: OpenCV's findChessboardCornersSB, declared here so that builds without OpenCV know its name and parameters, too.
 
-use crate::parameter::{Domain, Parameter};
+use crate::parameter::Parameter;
 use crate::registry::{Build, Method};
 
 /// A flag of OpenCV, off as in OpenCV.
 const fn flag(name: &'static str, about: &'static str) -> Parameter {
-    Parameter { name, about, domain: Domain::Whole { min: 0, max: 1 }, default: 0.0, always_shown: false }
+    Parameter::whole(name, about, [0, 1], 0.0)
 }
 
 const fn side(name: &'static str, about: &'static str, default: f64) -> Parameter {
-    Parameter { name, about, domain: Domain::Whole { min: 3, max: 100 }, default, always_shown: true }
+    Parameter::whole(name, about, [3, 100], default).always_shown()
 }
 
 const PARAMETERS: &[Parameter] = &[
@@ -18,13 +18,7 @@ const PARAMETERS: &[Parameter] = &[
     flag("accuracy", "1: CALIB_CB_ACCURACY, the image is enlarged"),
     flag("exhaustive", "1: CALIB_CB_EXHAUSTIVE, the search tries more"),
     flag("normalize", "1: CALIB_CB_NORMALIZE_IMAGE, grey values are equalised first"),
-    Parameter {
-        name: "radius",
-        about: "how far a corner of the board may be from the start, px",
-        domain: Domain::Real { min: 0.5, max: 30.0 },
-        default: 5.0,
-        always_shown: false,
-    },
+    Parameter::real("radius", "how far a corner of the board may be from the start, px", [0.5, 30.0], 5.0),
 ];
 
 /// OpenCV's findChessboardCornersSB. `build` makes it or says why it is not here, `version` is OpenCV's own.

@@ -3,7 +3,7 @@
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
 use crate::operator::{Operator, window_centre};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 
 /// At or below this ratio of its smaller to its larger curvature the surface is a ridge: it has no point.
@@ -24,21 +24,9 @@ pub struct Saddle {
 }
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "window",
-        about: "side of the window of the fit, px",
-        domain: Domain::Odd { min: 3, max: 31 },
-        default: 7.0,
-        always_shown: true,
-    },
-    Parameter {
-        name: "sigma",
-        about: "standard deviation of the smoothing Gaussian, px; 0 for none",
-        domain: Domain::Real { min: 0.0, max: 5.0 },
-        default: 1.5,
-        always_shown: false,
-    },
-    Parameter { name: "iterations", about: "most fits", domain: Domain::Whole { min: 1, max: 50 }, default: 10.0, always_shown: false },
+    Parameter::odd("window", "side of the window of the fit, px", [3, 31], 7.0).always_shown(),
+    Parameter::real("sigma", "standard deviation of the smoothing Gaussian, px; 0 for none", [0.0, 5.0], 1.5),
+    Parameter::whole("iterations", "most fits", [1, 50], 10.0),
 ];
 
 /// The method's entry.

@@ -7,7 +7,7 @@ mod theirs;
 use std::hint::black_box;
 use std::time::Instant;
 
-use calibench_exchange::st_map::{Direction, Overscan, StMap, Undistorted};
+use calibench_images::st_map::{Direction, Overscan, StMap, Undistorted};
 use calibench_model::PixelPoint;
 use calibench_model::camera::opencv::{CameraFromWorld, Jacobian};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};

@@ -12,6 +12,7 @@ mod warp;
 use std::time::Instant;
 
 use calibench_measure::{Board, BoardDetector};
+use calibench_model::upper_median;
 
 fn main() {
     // Cargo asks for a list or a test run in some of its commands.
@@ -43,9 +44,8 @@ fn timed(work: &mut impl FnMut()) -> f64 {
     clock.elapsed().as_secs_f64()
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
+fn median(values: Vec<f64>) -> f64 {
+    upper_median(values).expect("a round")
 }
 
 fn detection() {

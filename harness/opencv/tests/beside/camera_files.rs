@@ -1,6 +1,7 @@
 //! Camera files that we write are read by OpenCV's own FileStorage, and the other way round.
 
-use calibench_exchange::camera::{NamedCamera, ReadOptions, camera_text, format_named, parse_camera};
+use calibench_cameras::{ReadOptions, camera_text, format_named, parse_camera};
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, ImageSize, OpenCv, OpenCvFisheye};
 use opencv::core::{
     FileStorage, FileStorage_FORMAT_XML, FileStorage_FORMAT_YAML, FileStorage_MEMORY, FileStorage_READ, FileStorage_WRITE, Mat,

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::points::{Check, read_points_checked};
-use calibench_exchange::{Fingerprint, Groups, Names, PointFile, PointRef, Points, RENDERED, RenderedImage, read_rendered};
+use calibench_exchange::{Fingerprint, PointFile, RENDERED, RenderedImage, read_rendered};
 use calibench_measure::{ImageId, Known, RunId};
-use calibench_model::{Measurement, Rejection};
+use calibench_model::points::{Groups, Names};
+use calibench_model::{Measurement, PointRef, Points, Rejection};
 
 use super::declaration::{Images, Origin, Recording};
 

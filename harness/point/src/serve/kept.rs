@@ -7,8 +7,9 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use calibench_exchange::points::parse_points_checked;
-use calibench_exchange::{OutputFile, PointRef, PointRow, bounded, write_points};
-use calibench_model::{PixelPoint, Start, TargetKind};
+use calibench_exchange::write_points;
+use calibench_files::{OutputFile, bounded};
+use calibench_model::{PixelPoint, PointRef, PointRow, Start, TargetKind};
 use serde::Deserialize;
 use serde_json::{Value, json};
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use calibench_exchange::{ControlRow, PhotoError};
+use calibench_images::PhotoError;
 use calibench_measure::{Configured, Operator};
 use calibench_model::camera::{Camera, ImageSize};
-use calibench_model::{Image, PixelPoint, Start, TargetKind};
+use calibench_model::{ControlRow, Image, PixelPoint, Start, TargetKind};
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};

@@ -1,8 +1,10 @@
 use std::fs;
 
-use calibench_exchange::{ControlRow, OutputFile, read_points, write_png};
+use calibench_exchange::read_points;
+use calibench_files::OutputFile;
+use calibench_images::write_png;
 use calibench_measure::Registry;
-use calibench_model::{Image, TargetKind};
+use calibench_model::{ControlRow, Image, TargetKind};
 use serde_json::{Value, json};
 
 use super::*;

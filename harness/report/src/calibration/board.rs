@@ -3,7 +3,7 @@
 use std::io;
 
 use calibench_calibrate::{Bend, Board, Calibration, Shape};
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 
 use super::csv;
 use crate::plain;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use calibench_exchange::{NewFolder, write_table};
+use calibench_files::{NewFolder, write_table};
 
 /// Writes a header and rows.
 pub(super) fn table(folder: &NewFolder, name: &str, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {

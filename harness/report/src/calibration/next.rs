@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::io;
 
 use calibench_calibrate::{Calibration, Next, Photograph};
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 use plotters::prelude::*;

@@ -5,7 +5,7 @@ use std::io;
 
 use calibench_adjust::Precision;
 use calibench_calibrate::Calibration;
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_calibrate::Calibration;
-use calibench_exchange::Reading;
+use calibench_images::Reading;
 use serde_json::Value;
 
 use super::tests::{Row, number, rotation, rows, written};

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use calibench_calibrate::{Calibration, Optics};
 use calibench_model::camera::{Camera, CameraModel, Ray};
+use calibench_model::upper_median;
 use nalgebra::Point3;
 
 use crate::plain;
@@ -95,9 +96,8 @@ fn square(points: &[Point3<f64>]) -> Option<f64> {
     }
     let some = &points[..points.len().min(MOST)];
     let nearest = |a: &Point3<f64>| points.iter().map(|b| (a - b).norm()).filter(|apart| *apart > 0.0).fold(f64::INFINITY, f64::min);
-    let mut nearest: Vec<f64> = some.iter().map(nearest).collect();
-    nearest.sort_by(f64::total_cmp);
-    let middle = nearest[nearest.len() / 2];
+    let nearest: Vec<f64> = some.iter().map(nearest).collect();
+    let middle = upper_median(nearest.iter().copied())?;
     let (share, within) = REGULAR;
     let alike = nearest.iter().filter(|apart| (*apart - middle).abs() <= within * middle).count();
     (middle.is_finite() && alike as f64 >= share * nearest.len() as f64).then_some(middle)

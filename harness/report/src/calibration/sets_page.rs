@@ -3,7 +3,7 @@
 use std::io;
 
 use calibench_calibrate::{Compared, ComparedSet, SetResult};
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 
 use super::csv::table;
 use super::limits::{BASIC, DOUBTFUL};

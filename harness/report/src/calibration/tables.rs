@@ -5,7 +5,9 @@ use std::io;
 
 use calibench_adjust::{Found, PointReliability, Residual, Significance, Use};
 use calibench_calibrate::Calibration;
-use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control};
+use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control};
+use calibench_files::NewFolder;
+use calibench_model::ControlRow;
 use calibench_model::camera::CameraModel;
 
 use super::csv::table;

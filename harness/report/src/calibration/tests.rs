@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use calibench_calibrate::{Calibration, DatumChoice, Optics, Prepared, Settings, prepare};
-use calibench_exchange::{ControlRow, OutputFolder, PointRow};
+use calibench_files::OutputFolder;
 use calibench_model::camera::ImageSize;
-use calibench_model::{PixelPoint, Start};
+use calibench_model::{ControlRow, PixelPoint, PointRow, Start};
 
 use super::{summary, tables};
 

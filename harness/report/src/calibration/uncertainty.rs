@@ -4,9 +4,9 @@ use std::io;
 
 use calibench_adjust::{Distance, Held, Uncertainty, Variance};
 use calibench_calibrate::Calibration;
-use calibench_exchange::NewFolder;
-use calibench_model::PixelPoint;
+use calibench_files::NewFolder;
 use calibench_model::camera::{CameraModel, ImageSize};
+use calibench_model::{PixelPoint, upper_median};
 
 use super::csv::table;
 use crate::hull::Hull;
@@ -82,9 +82,7 @@ fn working_distance(calibration: &Calibration<'_>, camera: usize) -> f64 {
     let (poses, points) = (calibration.solution.poses(), calibration.solution.points());
     let depth = |o: &calibench_adjust::ImageObservation| -poses[o.image].ray(&points[o.point]).z;
     let observations = calibration.prepared.network.observations.iter().filter(|o| calibration.owner(o.image) == camera);
-    let mut depths: Vec<f64> = observations.map(depth).collect();
-    depths.sort_by(f64::total_cmp);
-    depths.get(depths.len() / 2).copied().filter(|depth| *depth > 0.0).unwrap_or(1.0)
+    upper_median(observations.map(depth)).filter(|depth| *depth > 0.0).unwrap_or(1.0)
 }
 
 /// Writes `uncertainty.csv`: a row for each place that has a ray, px and px^2.

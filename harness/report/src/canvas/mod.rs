@@ -7,8 +7,8 @@ mod series;
 use std::io::{self, Write};
 use std::sync::Once;
 
-use calibench_exchange::photograph::marked;
-use calibench_exchange::{NewFolder, OutputFile};
+use calibench_files::photograph::marked;
+use calibench_files::{NewFolder, OutputFile};
 use calibench_model::Image;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};

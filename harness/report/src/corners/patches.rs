@@ -6,7 +6,7 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_adjust::Use;
-use calibench_exchange::{Reading, read_photo_as};
+use calibench_images::{Reading, read_photo_as};
 use calibench_model::{Image, PixelPoint};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};

@@ -1,25 +1,16 @@
 //! Text within HTML.
 
-use std::borrow::Cow;
 use std::fmt::Write;
 
 use calibench_model::escape;
 
 /// A text within HTML or a quoted attribute: markup and what a terminal would take for a command are shown as they are written.
 pub fn escaped(text: &str) -> String {
-    let text: Cow<'_, str> = escape::message(text);
-    let mut out = String::with_capacity(text.len() + 8);
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            c => out.push(c),
-        }
-    }
-    out
+    escape::markup(&escape::message(text), |c| match c {
+        '"' => Some("&quot;".into()),
+        '\'' => Some("&#39;".into()),
+        _ => None,
+    })
 }
 
 /// A text that stands between bars in an attribute.

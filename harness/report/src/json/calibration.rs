@@ -2,8 +2,8 @@
 
 use calibench_adjust::{Significance, Use};
 use calibench_calibrate::{Calibration, Checked, Finding, Shape, Suspected, Verdict};
-use calibench_exchange::camera::NamedCamera;
 use calibench_exchange::station_numbers;
+use calibench_model::NamedCamera;
 use schemars::JsonSchema;
 use serde::Serialize;
 

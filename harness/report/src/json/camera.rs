@@ -1,7 +1,8 @@
 //! A camera, and a camera file, as JSON.
 
-use calibench_exchange::camera::{CameraFile, NamedCamera, ParameterCovariance, PoseFrame};
+use calibench_model::NamedCamera;
 use calibench_model::camera::{CameraModel, CameraParameter, Convention, Verification, fold_radius, without_ray};
+use calibench_model::named_camera::{ParameterCovariance, PoseFrame};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -31,15 +32,8 @@ impl Answer for CameraFileAnswer {
 }
 
 impl CameraFileAnswer {
-    /// What is in the file called `name`, and of `chosen` what its parameters mean.
-    pub fn new(name: &str, file: &CameraFile, chosen: &NamedCamera) -> Self {
-        let CameraFile { format, cameras } = file;
-        let format = Format {
-            name: format.name.into(),
-            tool: format.tool.into(),
-            versions: format.versions.into(),
-            verified: format.verified.map(str::to_owned),
-        };
+    /// What is in the file called `name`: its cameras, and of the one `chosen` what its parameters mean.
+    pub fn new(name: &str, format: Format, cameras: &[NamedCamera], chosen: &NamedCamera) -> Self {
         let cameras: Vec<Listed> = cameras.iter().map(Listed::of).collect();
         let (camera, frame) = (CameraAnswer::new(chosen), Frame::of(chosen));
         Self { file: name.into(), format, count: cameras.len(), cameras, camera, frame }
@@ -48,15 +42,15 @@ impl CameraFileAnswer {
 
 /// The format of a camera file.
 #[derive(Serialize, JsonSchema)]
-struct Format {
+pub struct Format {
     /// Its name here: `calibench list formats`.
-    name: String,
+    pub name: String,
     /// The tool that it belongs to.
-    tool: String,
+    pub tool: String,
     /// The tool's versions that it is known from.
-    versions: String,
+    pub versions: String,
     /// Which of the tool's own numbers were reproduced; null: it is unverified.
-    verified: Option<String>,
+    pub verified: Option<String>,
 }
 
 /// A camera of a file that holds several.

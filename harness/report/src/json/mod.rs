@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use calibration::CalibrationAnswer;
-pub use camera::{CameraAnswer, CameraFileAnswer};
+pub use camera::{CameraAnswer, CameraFileAnswer, Format as CameraFileFormat};
 pub use conversion::{ConversionAnswer, ConvertedCamera};
 pub use difference::{DifferenceAnswer, Part};
 pub use judgement::JudgementAnswer;

@@ -1,6 +1,6 @@
 //! The verdict in words, every one of them derived from the records.
 
-use calibench_model::escape;
+use calibench_model::{escape, upper_median};
 use calibench_records::judgement::{
     ALPHA, Beside, Cell, Estimate, HONEST, InUse, MARGIN_PX, Measured, OUTLIER_ALPHA, Published, Standing, StillHolds, Summary, Trusted,
 };
@@ -230,9 +230,7 @@ fn outlying(cell: &Cell) -> String {
         .iter()
         .map(|view| format!("{} ({} px, {})", escape::code(&view.name), plain(view.residual.0), chance(view.p)))
         .collect();
-    let mut rms: Vec<f64> = cell.views.iter().map(|view| view.residual.0).collect();
-    rms.sort_by(f64::total_cmp);
-    let middle = rms.get(rms.len() / 2).copied().unwrap_or_default();
+    let middle = upper_median(cell.views.iter().map(|view| view.residual.0)).unwrap_or_default();
     match named.len() {
         0 => format!("**Outlying photographs**: none of {} (alpha {OUTLIER_ALPHA}; median RMS {} px).", cell.views.len(), plain(middle)),
         _ => format!(

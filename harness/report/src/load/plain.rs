@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::photo::{Levels, read_levels, read_photo};
+use calibench_images::photo::{Levels, read_levels, read_photo};
 use calibench_model::Image;
 use calibench_records::description::Description;
 use calibench_records::names::{SCENARIO, kept_image};

@@ -213,7 +213,7 @@ pub fn tables(folder: &Path, paper: &str) -> Result<Vec<(String, Table)>, Publis
     };
     names.sort();
     let read = |path: PathBuf| {
-        let text = calibench_exchange::bounded::text(&path).map_err(|source| PublishedError::File { path: path.clone(), source })?;
+        let text = calibench_files::bounded::text(&path).map_err(|source| PublishedError::File { path: path.clone(), source })?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut table = parse(&path.display().to_string(), &text)?;
         if let Some(file) = &table.ensemble {

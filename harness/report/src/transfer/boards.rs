@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use calibench_model::median;
 use calibench_records::adjustments::{Numbers, Row};
 use calibench_records::figures::Quantity;
 use plotters::prelude::*;
@@ -45,14 +46,8 @@ impl Distances {
 
     /// Their medians, px.
     pub fn medians(self) -> BTreeMap<String, f64> {
-        self.values.into_iter().map(|(method, values)| (method.to_string(), median(values))).collect()
+        self.values.into_iter().filter_map(|(method, values)| Some((method.to_string(), median(values)?))).collect()
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
 }
 
 /// A row a cell and method: the camera, its own opinion of c beside the truth, and check points under every case.

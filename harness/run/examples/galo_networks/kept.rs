@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
-use calibench_exchange::OutputFile;
+use calibench_files::OutputFile;
 use calibench_records::figures::Quantity;
 use calibench_records::results::{Figure, find};
 

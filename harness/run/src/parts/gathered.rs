@@ -5,8 +5,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::at;
-use calibench_exchange::folder::intact;
+use calibench_files::at;
+use calibench_files::folder::intact;
 use calibench_records::names::{ORIGIN, PART, cell_name};
 use calibench_records::parts::Manifest;
 use calibench_records::stored::Table;

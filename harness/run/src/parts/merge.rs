@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{NewFolder, at};
+use calibench_files::{NewFolder, at};
 use calibench_model::told::{Told, notes};
 use calibench_records::compressor::Compressor;
 use calibench_records::description::{read as read_description, write as write_description};

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::NewFolder;
-use calibench_exchange::folder::intact;
+use calibench_files::NewFolder;
+use calibench_files::folder::intact;
 use calibench_measure::Configured;
 use calibench_measure::registry::told;
 use calibench_records::names::PART;

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{NewFolder, at};
+use calibench_files::{NewFolder, at};
 use calibench_store::{Key, Store};
 
 /// Puts the stored images into `folder`; whether there are any.

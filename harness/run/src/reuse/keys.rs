@@ -1,6 +1,6 @@
 //! What results are stored under.
 
-use calibench_exchange::folder::digest;
+use calibench_files::folder::digest;
 use calibench_scenario::Subject;
 use calibench_store::Key;
 

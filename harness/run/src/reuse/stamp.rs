@@ -4,8 +4,8 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use calibench_exchange::at;
-use calibench_exchange::folder::{MANIFEST, digest, intact};
+use calibench_files::at;
+use calibench_files::folder::{MANIFEST, digest, intact};
 use calibench_scenario::Subject;
 use calibench_store::Key;
 

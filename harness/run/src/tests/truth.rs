@@ -4,8 +4,9 @@ use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::camera::read_camera;
-use calibench_exchange::{NewFolder, OutputFolder, read_control, read_stations};
+use calibench_cameras::read_camera;
+use calibench_exchange::{read_control, read_stations};
+use calibench_files::{NewFolder, OutputFolder};
 use calibench_model::TargetKind;
 use calibench_model::camera::CameraModel;
 use calibench_records::description;

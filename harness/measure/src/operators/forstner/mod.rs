@@ -7,7 +7,7 @@ use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Sta
 
 use self::weighted::Gradients;
 use crate::operator::{Operator, window_centre};
-use crate::parameter::{Domain, Parameter, SIGNIFICANCE, Settings};
+use crate::parameter::{Parameter, SIGNIFICANCE, Settings};
 use crate::registry::{Build, Method};
 
 /// At or below this ratio of the eigenvalues of the normal matrix the window holds a single edge.
@@ -62,62 +62,24 @@ const CORRELATED: f64 = 70.0 / 36.0 * 1.5;
 const STILL: f64 = 1e-3;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "window",
-        about: "side of the window, px",
-        domain: Domain::Odd { min: 3, max: 31 },
-        default: 11.0,
-        always_shown: true,
-    },
-    Parameter {
-        name: "iterations",
-        about: "most passes; from 2 on the window follows the result",
-        domain: Domain::Whole { min: 1, max: 100 },
-        default: 1.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "gauss",
-        about: "standard deviation of Gaussian weights, px; 0 for equal weights",
-        domain: Domain::Real { min: 0.0, max: 31.0 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "covariance",
-        about: "0: from the scatter of the edge lines; 1: from the noise of the grey values",
-        domain: Domain::Whole { min: 0, max: 1 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "noise",
-        about: "standard deviation of the noise for covariance=1, as a fraction of full scale; 0 to estimate it",
-        domain: Domain::Real { min: 0.0, max: 1.0 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "roundness",
-        about: "least roundness of the error ellipse, 4 det N / tr^2 N",
-        domain: Domain::Real { min: 0.0, max: 1.0 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "size",
-        about: "longest semi-axis of the error ellipse, px; 0 for any",
-        domain: Domain::Real { min: 0.0, max: 100.0 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: SIGNIFICANCE,
-        about: "standard deviations by which the weaker eigenvalue exceeds that of noise, where the error ellipse is longer than 0.2 px; 0: any corner counts",
-        domain: Domain::Real { min: 0.0, max: 100.0 },
-        default: 0.0,
-        always_shown: false,
-    },
+    Parameter::odd("window", "side of the window, px", [3, 31], 11.0).always_shown(),
+    Parameter::whole("iterations", "most passes; from 2 on the window follows the result", [1, 100], 1.0),
+    Parameter::real("gauss", "standard deviation of Gaussian weights, px; 0 for equal weights", [0.0, 31.0], 0.0),
+    Parameter::whole("covariance", "0: from the scatter of the edge lines; 1: from the noise of the grey values", [0, 1], 0.0),
+    Parameter::real(
+        "noise",
+        "standard deviation of the noise for covariance=1, as a fraction of full scale; 0 to estimate it",
+        [0.0, 1.0],
+        0.0,
+    ),
+    Parameter::real("roundness", "least roundness of the error ellipse, 4 det N / tr^2 N", [0.0, 1.0], 0.0),
+    Parameter::real("size", "longest semi-axis of the error ellipse, px; 0 for any", [0.0, 100.0], 0.0),
+    Parameter::real(
+        SIGNIFICANCE,
+        "standard deviations by which the weaker eigenvalue exceeds that of noise, where the error ellipse is longer than 0.2 px; 0: any corner counts",
+        [0.0, 100.0],
+        0.0,
+    ),
 ];
 
 /// The method's entry.

@@ -58,49 +58,18 @@ pub struct Lsm {
 }
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "window",
-        about: "side of the window, px",
-        domain: Domain::Odd { min: 5, max: 47 },
-        default: 15.0,
-        always_shown: true,
-    },
-    Parameter {
-        name: "shape",
-        about: "what is pictured: 0 as the start says, or else 1 corner, 2 chess corner, 4 cross, 5 disc, 6 square, 7 triangle",
-        domain: Domain::Whole { min: 0, max: 7 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "size",
-        about: "size of the target where the start gives no affine map, px; 0 to take it from the image",
-        domain: Domain::Real { min: 0.0, max: 100.0 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "sigma",
-        about: "standard deviation of the Gaussian blur, px; where it is sought, its start",
-        domain: Domain::Real { min: 0.2, max: 4.0 },
-        default: 0.7,
-        always_shown: false,
-    },
-    Parameter {
-        name: "sharpness",
-        about: "is the blur sought, too? 0 no, 1 yes",
-        domain: Domain::Whole { min: 0, max: 1 },
-        default: 1.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "neighbours",
-        about: "what stands beside a closed target: 0 counts with the window, 1 is left out",
-        domain: Domain::Whole { min: 0, max: 1 },
-        default: 1.0,
-        always_shown: false,
-    },
-    Parameter { name: "iterations", about: "most steps", domain: Domain::Whole { min: 1, max: 100 }, default: 30.0, always_shown: false },
+    Parameter::odd("window", "side of the window, px", [5, 47], 15.0).always_shown(),
+    Parameter::whole(
+        "shape",
+        "what is pictured: 0 as the start says, or else 1 corner, 2 chess corner, 4 cross, 5 disc, 6 square, 7 triangle",
+        [0, 7],
+        0.0,
+    ),
+    Parameter::real("size", "size of the target where the start gives no affine map, px; 0 to take it from the image", [0.0, 100.0], 0.0),
+    Parameter::real("sigma", "standard deviation of the Gaussian blur, px; where it is sought, its start", [0.2, 4.0], 0.7),
+    Parameter::whole("sharpness", "is the blur sought, too? 0 no, 1 yes", [0, 1], 1.0),
+    Parameter::whole("neighbours", "what stands beside a closed target: 0 counts with the window, 1 is left out", [0, 1], 1.0),
+    Parameter::whole("iterations", "most steps", [1, 100], 30.0),
     Parameter {
         name: "epsilon",
         about: "step of the position at which iteration ends, px",

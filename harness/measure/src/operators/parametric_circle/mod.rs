@@ -7,7 +7,7 @@ use crate::disc_fit::{Fitted, Grey, fit, start};
 use crate::ellipse::seek;
 use crate::marquardt::covariance;
 use crate::operator::Operator;
-use crate::parameter::{Domain, Parameter};
+use crate::parameter::Parameter;
 use crate::registry::{Build, Method};
 use crate::residuals::misfit;
 
@@ -32,13 +32,7 @@ pub struct ParametricCircle {
 pub(super) const MISFIT: f64 = 0.1;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "window",
-        about: "side of the window, an odd number of px (an even one is made odd); 0: as the ellipse needs",
-        domain: Domain::Whole { min: 0, max: 151 },
-        default: 0.0,
-        always_shown: false,
-    },
+    Parameter::whole("window", "side of the window, an odd number of px (an even one is made odd); 0: as the ellipse needs", [0, 151], 0.0),
     misfit(MISFIT),
 ];
 

@@ -19,7 +19,7 @@ use crate::following::{Fitted, Rest, follow, in_smaller_windows};
 use crate::gradient::{ADDED, EACH, EVEN, LIGHT, estimated};
 use crate::marquardt::covariance;
 use crate::operator::{Operator, finite_around, window_centre};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 
 use model::BASE;
@@ -80,42 +80,17 @@ pub struct ParametricCorner {
 }
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "window",
-        about: "side of the window, px",
-        domain: Domain::Odd { min: 7, max: window::WIDEST as u32 },
-        default: 15.0,
-        always_shown: true,
-    },
-    Parameter {
-        name: "search",
-        about: "the corner is sought within so many px of the start, along each axis",
-        domain: Domain::Whole { min: 0, max: 12 },
-        default: 5.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "gradient",
-        about: "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of the dark and of the \
+    Parameter::odd("window", "side of the window, px", [7, window::WIDEST as u32], 15.0).always_shown(),
+    Parameter::whole("search", "the corner is sought within so many px of the start, along each axis", [0, 12], 5.0),
+    Parameter::whole(
+        "gradient",
+        "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of the dark and of the \
                 light grey value, each its own",
-        domain: Domain::Whole { min: 0, max: 3 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "curvature",
-        about: "1: a curvature of each edge is estimated, 0: edges are straight",
-        domain: Domain::Whole { min: 0, max: 1 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "photosite",
-        about: "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel",
-        domain: Domain::Real { min: 0.1, max: 1.0 },
-        default: 1.0,
-        always_shown: false,
-    },
+        [0, 3],
+        0.0,
+    ),
+    Parameter::whole("curvature", "1: a curvature of each edge is estimated, 0: edges are straight", [0, 1], 0.0),
+    Parameter::real("photosite", "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel", [0.1, 1.0], 1.0),
 ];
 
 /// The method's entry.

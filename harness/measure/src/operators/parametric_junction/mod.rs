@@ -17,7 +17,7 @@ use crate::following::{self, Rest, follow, in_smaller_windows};
 use crate::gradient::estimated;
 use crate::marquardt::covariance;
 use crate::operator::{Operator, finite_around, window_centre};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Parameter, Settings};
 use crate::registry::{Build, Method};
 use evidence::Limits;
 use sectors::{Guess, sectors};
@@ -60,50 +60,24 @@ pub struct ParametricJunction {
 }
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "window",
-        about: "side of the window, px",
-        domain: Domain::Odd { min: 9, max: 41 },
-        default: 15.0,
-        always_shown: true,
-    },
-    Parameter {
-        name: "arms",
-        about: "edges that leave the point; 4: two straight ones that cross; 0: chosen by the data",
-        domain: Domain::Choice(&[0, 2, 3, 4]),
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "search",
-        about: "the point is sought within so many px of the start, along each axis",
-        domain: Domain::Whole { min: 0, max: 12 },
-        default: 5.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "gradient",
-        about: "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of each sector's grey \
+    Parameter::odd("window", "side of the window, px", [9, 41], 15.0).always_shown(),
+    Parameter::choice("arms", "edges that leave the point; 4: two straight ones that cross; 0: chosen by the data", &[0, 2, 3, 4], 0.0),
+    Parameter::whole("search", "the point is sought within so many px of the start, along each axis", [0, 12], 5.0),
+    Parameter::whole(
+        "gradient",
+        "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of each sector's grey \
                 value, each its own",
-        domain: Domain::Whole { min: 0, max: 3 },
-        default: 0.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "photosite",
-        about: "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel",
-        domain: Domain::Real { min: 0.1, max: 1.0 },
-        default: 1.0,
-        always_shown: false,
-    },
-    Parameter {
-        name: "misfit",
-        about: "two arms are rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise; more arms earlier. \
+        [0, 3],
+        0.0,
+    ),
+    Parameter::real("photosite", "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel", [0.1, 1.0], 1.0),
+    Parameter::real(
+        "misfit",
+        "two arms are rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise; more arms earlier. \
                 Prints and lenses of photographs may leave more",
-        domain: Domain::Real { min: 0.0, max: 1.0 },
-        default: evidence::MISFIT,
-        always_shown: false,
-    },
+        [0.0, 1.0],
+        evidence::MISFIT,
+    ),
 ];
 
 /// The method's entry.

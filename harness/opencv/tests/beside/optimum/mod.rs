@@ -5,10 +5,10 @@ mod theirs;
 use std::path::Path;
 
 use calibench_calibrate::{Optics, Settings, prepare};
-use calibench_exchange::{ControlRow, Points, read_photo};
+use calibench_images::read_photo;
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::camera::{CameraModel, ImageSize};
-use calibench_model::{PixelPoint, Start};
+use calibench_model::{ControlRow, PixelPoint, Points, Start};
 
 const BOARD: Board = Board { columns: 9, rows: 6 };
 const SIZE: ImageSize = ImageSize { width: 640, height: 480 };

@@ -9,6 +9,7 @@ mod trusted;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use calibench_model::upper_median;
 use calibench_random::{Key, Purpose, stream};
 use rand::RngExt;
 
@@ -329,9 +330,8 @@ fn split(rows: &[&Row]) -> Option<Split> {
 }
 
 /// Twice the middle of p-values, of an even number the upper one of the two; 1 of none.
-fn twice_median(mut p: Vec<f64>) -> f64 {
-    p.sort_by(f64::total_cmp);
-    p.get(p.len() / 2).map_or(1.0, |middle| (2.0 * middle).min(1.0))
+fn twice_median(p: Vec<f64>) -> f64 {
+    upper_median(p).map_or(1.0, |middle| (2.0 * middle).min(1.0))
 }
 
 #[cfg(test)]

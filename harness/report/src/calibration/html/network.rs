@@ -1,5 +1,7 @@
 //! Stations, points and rays of a network.
 
+use calibench_model::upper_median;
+
 use crate::camera_card::view;
 use crate::html::{Scene, ScenePoint, Station};
 use calibench_adjust::Status;
@@ -73,10 +75,9 @@ pub(in super::super) fn extent(stations: &[Station], points: &[ScenePoint]) -> f
 
 /// A round number of times by which the median ellipsoid is about a hundredth of the network.
 pub(in super::super) fn factor(stations: &[Station], points: &[ScenePoint]) -> f64 {
-    let mut sigmas: Vec<f64> = points.iter().filter_map(|p| p.covariance).map(|c| c[0].max(c[3]).max(c[5]).sqrt()).collect();
-    sigmas.sort_by(f64::total_cmp);
-    match sigmas.get(sigmas.len() / 2) {
-        Some(middle) if *middle > 0.0 => crate::field::stretch(0.01 * extent(stations, points), *middle),
+    let sigmas = points.iter().filter_map(|p| p.covariance).map(|c| c[0].max(c[3]).max(c[5]).sqrt());
+    match upper_median(sigmas) {
+        Some(middle) if middle > 0.0 => crate::field::stretch(0.01 * extent(stations, points), middle),
         _ => 1.0,
     }
 }

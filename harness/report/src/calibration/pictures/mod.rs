@@ -9,7 +9,7 @@ mod uncertainty;
 use std::io;
 
 use calibench_calibrate::Calibration;
-use calibench_exchange::NewFolder;
+use calibench_files::NewFolder;
 use calibench_model::camera::CameraModel;
 
 use super::uncertainty::UncertaintyMap;

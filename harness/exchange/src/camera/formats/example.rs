@@ -1,1 +1,0 @@
-../../../../../examples/camera_format.rs

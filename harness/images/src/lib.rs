@@ -1,0 +1,14 @@
+//! Photographs and other pictures in files: grey values, depths and turns as cameras write them, PNG as we do, and maps from pixel to pixel.
+
+pub mod photo;
+pub mod st_map;
+
+pub use photo::{
+    DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,
+    read_photo, read_photo_as, read_with_levels, size_of, write_png,
+};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
