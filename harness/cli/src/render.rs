@@ -9,7 +9,7 @@ use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Points, Start};
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
-use calibench_run::views::{self, Prepared, PreparedView};
+use calibench_run::prepared::{self, Prepared, PreparedView};
 use calibench_run::{RunError, VIEW, starts, trial_picture, trial_truth, truth};
 use calibench_scenario::stations::{LOCAL_DISTORTION, NOISE_FREE};
 use calibench_scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
@@ -128,7 +128,7 @@ impl Render {
             || folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, deep)),
             || {
                 (
-                    views::starts(prepared, view, &exposure.image, key),
+                    prepared::starts(prepared, view, &exposure.image, key),
                     self.listed(scenario, &view.station.name, (&exposure.image, deep), key),
                 )
             },

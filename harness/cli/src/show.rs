@@ -9,7 +9,7 @@ use calibench_model::camera::CameraModel;
 use calibench_model::{Image, PixelPoint, TargetKind};
 use calibench_random::Key;
 use calibench_report::preview;
-use calibench_run::views::{Prepared, is_pointed_at};
+use calibench_run::prepared::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
 use calibench_scenario::camera::LocalPlan;
 use calibench_scenario::printed::{Column, Printed};

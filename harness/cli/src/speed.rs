@@ -9,7 +9,7 @@ use calibench_measure::coverage::all_busy;
 use calibench_measure::{Configured, Operator, Sought};
 use calibench_model::{Image, Start};
 use calibench_report::speeds::{SPEEDS, Speed, Speeds};
-use calibench_run::views::first_image;
+use calibench_run::prepared::first_image;
 use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject};
 use clap::Args;

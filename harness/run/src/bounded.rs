@@ -1,49 +1,16 @@
-//! The bounds of a trial's points apart from measuring them: for points that are there already.
+//! The bounds of a trial's points.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use calibench_records::results::PointResult;
 
+use crate::Plan;
 use crate::bounds::BySet;
-use crate::{Plan, RunError, scene, views};
-
-/// What computes bounds, with what is the same in all trials.
-pub(crate) enum Bounding<'a> {
-    /// Nothing has any.
-    Nothing,
-    /// A scene, which may lie elsewhere in each trial.
-    Scene(Box<scene::Prepared<'a>>),
-    /// Views that are the same in all trials, with their bounds.
-    Fixed(TrialBounds),
-    /// Views that change.
-    Views(Box<views::Trials<'a>>),
-}
 
 /// The bounds of a trial, by view and target.
 #[derive(Clone, Default)]
 pub(crate) struct TrialBounds(HashMap<Arc<str>, HashMap<Arc<str>, BySet>>);
-
-impl<'a> Bounding<'a> {
-    /// Of views.
-    pub fn views(trials: views::Trials<'a>) -> Self {
-        trials.fixed_bounds().map_or_else(|| Self::Views(Box::new(trials)), Self::Fixed)
-    }
-
-    /// Those of trial `number`.
-    ///
-    /// # Errors
-    /// A view that cannot be pictured.
-    pub fn of(&self, plan: &Plan<'_>, number: u64) -> Result<Cow<'_, TrialBounds>, RunError> {
-        Ok(match self {
-            Self::Nothing => Cow::Owned(TrialBounds::default()),
-            Self::Scene(prepared) => Cow::Owned(scene::bounds(plan, prepared, number)),
-            Self::Fixed(bounds) => Cow::Borrowed(bounds),
-            Self::Views(trials) => Cow::Owned(trials.bounds(plan, number)?),
-        })
-    }
-}
 
 impl FromIterator<(Arc<str>, Arc<str>, BySet)> for TrialBounds {
     fn from_iter<I: IntoIterator<Item = (Arc<str>, Arc<str>, BySet)>>(all: I) -> Self {

@@ -16,8 +16,8 @@ use calibench_scenario::{Blocks, Printed, Scenario, Subject, Sweep, ViewsSubject
 use calibench_synth::stations::Station;
 use calibench_synth::view::View;
 
+use crate::prepared::is_pointed_at;
 use crate::printed::PRINT;
-use crate::views::is_pointed_at;
 
 /// What methods told, as paragraphs beside a scenario's own notes.
 pub fn told_notes<'m>(told: impl IntoIterator<Item = (&'m str, Told)>) -> impl Iterator<Item = String> {

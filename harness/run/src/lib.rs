@@ -2,6 +2,7 @@
 
 pub mod blocks;
 mod bounded;
+mod bounding;
 mod bounds;
 pub mod description;
 mod detection;
@@ -16,6 +17,7 @@ pub mod parts;
 mod photographs;
 mod plan;
 mod planned;
+pub mod prepared;
 pub mod printed;
 pub mod recognition;
 pub mod reuse;
@@ -30,7 +32,7 @@ pub mod transfer;
 mod trials;
 pub mod truth;
 mod viewed;
-pub mod views;
+mod views;
 
 pub use error::RunError;
 pub use order::Order;

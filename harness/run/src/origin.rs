@@ -11,7 +11,7 @@ use calibench_synth::view::TargetTruth;
 use nalgebra::{Matrix2x3, Matrix3, Vector2, Vector3};
 
 use crate::RunError;
-use crate::views::{Prepared, is_pointed_at};
+use crate::prepared::{Prepared, is_pointed_at};
 
 /// Phases along each axis.
 const PHASES: usize = 4;

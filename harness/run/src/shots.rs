@@ -9,8 +9,8 @@ use calibench_synth::view::Visibility;
 use nalgebra::Point3;
 use rayon::prelude::*;
 
-use crate::views::{Prepared, PreparedView};
-use crate::{RunError, VIEW, scene, views};
+use crate::prepared::{Prepared, PreparedView};
+use crate::{RunError, VIEW, prepared, scene};
 
 /// A target and the truth about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +96,7 @@ fn from_stations(subject: &ViewsSubject, key: Key<'_>, asked: &[String]) -> Resu
 
 fn from_station(subject: &ViewsSubject, prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Result<Shot, RunError> {
     let image = prepared.image(view, key)?.image;
-    let starts = views::starts(prepared, view, &image, key).into_iter().map(|(name, start)| (name.to_owned(), start)).collect();
+    let starts = prepared::starts(prepared, view, &image, key).into_iter().map(|(name, start)| (name.to_owned(), start)).collect();
     let target = |(target, truth): (&calibench_model::ObjectTarget, &calibench_synth::view::TargetTruth)| TrueTarget {
         id: target.id.clone(),
         kind: target.kind,

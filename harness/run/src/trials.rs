@@ -7,7 +7,7 @@ use calibench_records::results::{Calibrated, Trial};
 use calibench_scenario::{PhotographsSubject, Printed, Subject};
 use rayon::prelude::*;
 
-use super::bounded::Bounding;
+use super::bounding::Bounding;
 use super::made::Made;
 use super::transfer::Campaign;
 use super::{Plan, RunError, photographs, printed, scene, views};

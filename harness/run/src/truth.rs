@@ -15,7 +15,7 @@ use calibench_synth::stations::Station;
 use calibench_synth::view::{Ellipse, TargetTruth, Visibility};
 use rayon::prelude::*;
 
-use crate::views::PreparedView;
+use crate::prepared::PreparedView;
 
 /// Those of a point file, and what else is known: its reader knows these names, too.
 const VIEW_COLUMNS: [&str; 21] = [

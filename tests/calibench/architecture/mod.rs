@@ -11,7 +11,7 @@ use crate::project::root;
 use modules::Modules;
 
 /// Files and folders of one folder that need each other and are yet to be parted. This list only gets shorter: what two of them share moves into a third, below both.
-const KNOTS: [&str; 20] = [
+const KNOTS: [&str; 18] = [
     "adjust: normal/blocks, normal/observed_unknowns",
     "adjust: quality/robust, quality/snooping",
     "adjust: solve/elimination_order, solve/window",
@@ -28,8 +28,6 @@ const KNOTS: [&str; 20] = [
     "python: calibrating, camera, difference, judging, measuring, pickled, points, pose, rendering, running",
     "recognise: ground, recogniser, square",
     "report: canvas/recorder, canvas/series",
-    "run: bounded, scene, viewed, views",
-    "run: transfer/drawn, transfer/imaged",
     "synth: raster/sharp, raster/strip",
     "synth: view/disc, view/truth",
 ];

@@ -10,8 +10,8 @@ use calibench_synth::local::LocalDistortion;
 
 use super::truth::{fill, number, rows};
 use super::{KEY, SCENARIO, scenario, trials, views};
+use crate::prepared::Prepared;
 use crate::truth;
-use crate::views::Prepared;
 
 const STAND: &str = "[stations]\nkind = \"stand\"\nphis = [0, 30]\nturns = [0, 90]\nrolls = [0, 90]\ndistance = 5\n";
 const BEND: &str = "bend = 0.02\nbend_reach = 0.5\n";

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Point3, Vector3};
 
 use super::blocks::{BEND, HEAD, SETS, stand};
 use super::{KEY, trials, views};
-use crate::views::Prepared;
+use crate::prepared::Prepared;
 
 /// The camera of the scenario: mm, mm a pixel, middle of the frame (px), spacing of Ebner's grid (mm).
 const C: f64 = 10.0;

@@ -14,8 +14,8 @@ use calibench_synth::sensor::Clipped;
 
 use super::boards::board;
 use super::{KEY, scenario, views};
+use crate::prepared::Prepared;
 use crate::truth::{self, StationRow};
-use crate::views::Prepared;
 
 pub(super) fn rows(path: &Path) -> Vec<HashMap<String, String>> {
     let text = std::fs::read_to_string(path).unwrap();

@@ -8,8 +8,8 @@ use calibench_model::camera::{Camera, CameraModel};
 use calibench_scenario::transfer::{Calibrates, Conditions, Method, NO_SOLVER, Solver};
 use nalgebra::Point3;
 
-use super::Campaign;
-use super::drawn::{Drawn, Seen};
+use super::drawn::Drawn;
+use super::{Campaign, Seen};
 
 /// Control points from which an image is resected for a start.
 const ENOUGH: usize = 12;

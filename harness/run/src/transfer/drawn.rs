@@ -5,20 +5,18 @@ use std::rc::Rc;
 
 use calibench_adjust::approximate::Control;
 use calibench_model::camera::{Camera, CameraModel};
-use calibench_model::{Bend, PixelPoint, Plate, Pose, Testfield};
+use calibench_model::{PixelPoint, Pose};
 use calibench_random::{Key, Purpose, stream};
 use calibench_scenario::transfer::{Board, Conditions};
 use calibench_synth::stations::Station;
 use nalgebra::{Point3, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::Campaign;
+use super::bent::bent;
 use super::camera::refocused;
 use super::imaged::{BoardImages, measured_wall};
+use super::{Campaign, Seen};
 use crate::RunError;
-
-/// A target or corner, by its place in the field, and its image coordinates, px.
-pub type Seen = (usize, PixelPoint);
 
 /// What is measured in a trial, drawn or in rendered images, and its survey, which all conditions share, and its board's views.
 pub struct Drawn<'a> {
@@ -164,23 +162,4 @@ fn views(board: &Board, camera: &Camera, key: Key<'_>) -> Result<Vec<Station>, S
     };
     let all_inside = |pose: &Pose| board.field.targets.iter().all(|target| inside(pose, &target.surveyed));
     board.views.generate(&board.aim, key, all_inside).map_err(|error| error.to_string())
-}
-
-/// The corners of a board whose middle is higher by `peak` than its outermost corners along its longer side.
-pub(super) fn bent(board: &Board, peak: f64) -> Vec<Point3<f64>> {
-    let plate = bent_plate(&board.field, peak);
-    board.field.targets.iter().map(|target| plate.point(target.at)).collect()
-}
-
-/// The board's sheet, bent so.
-pub(super) fn bent_plate(field: &Testfield, peak: f64) -> Plate {
-    let ends = |axis: usize| {
-        let along = field.targets.iter().map(|target| target.at[axis]);
-        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
-    };
-    let [(u0, u1), (v0, v1)] = [ends(0), ends(1)];
-    let across = if u1 - u0 >= v1 - v0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
-    let reach = 0.5 * (u1 - u0).max(v1 - v0);
-    let bend = Some(Bend { peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across, reach });
-    Plate { bend, ..field.plates[0].clone() }
 }

@@ -9,11 +9,11 @@ use calibench_scenario::transfer::{Board, Measuring};
 use calibench_synth::stations::Station;
 use rayon::prelude::*;
 
-use super::Campaign;
-use super::drawn::{Seen, bent_plate};
+use super::bent::bent_plate;
+use super::{Campaign, Seen};
 use crate::RunError;
 use crate::measured::{Asked, Pictured, of_its_kinds};
-use crate::views::{Pointed, Prepared, pointed};
+use crate::prepared::{Pointed, Prepared, pointed};
 
 /// Of each target that is pointed at its place, and its image coordinates if it was measured, px.
 type Found = Vec<(usize, Option<PixelPoint>)>;
@@ -99,7 +99,7 @@ fn images(
     detector: Option<&dyn BoardDetector>,
     key: Key<'_>,
 ) -> Result<Vec<Vec<Found>>, RunError> {
-    let view = |view: &crate::views::PreparedView<'_>| {
+    let view = |view: &crate::prepared::PreparedView<'_>| {
         let image = prepared.image(view, key)?.image;
         let points = pointed(prepared, view, &image, key);
         Ok(ways.iter().map(|way| measured(&prepared.subject.field, way, detector, &image, &points)).collect())

@@ -4,6 +4,7 @@
 //! Calibrations are told what a user would know: image coordinates, the survey, a flat board, a data sheet. Conditions of one trial share their random
 //! numbers, so that their differences are what they differ by.
 
+mod bent;
 mod calibrated;
 mod camera;
 mod decomposition;
@@ -25,8 +26,11 @@ use calibench_scenario::{Transfer, ViewsSubject};
 use calibench_synth::view::View;
 use nalgebra::Point3;
 
-use crate::views::is_pointed_at;
+use crate::prepared::is_pointed_at;
 use crate::{RunError, Tools};
+
+/// A target or corner, by its place in the field, and its image coordinates, px.
+pub type Seen = (usize, PixelPoint);
 
 /// What is the same in all trials.
 pub struct Campaign<'a> {
@@ -42,7 +46,7 @@ pub struct Campaign<'a> {
     all: Vec<usize>,
     tools: Tools<'a>,
     /// Of each station the control and check points that it sees, and where, px.
-    images: Vec<Vec<(usize, PixelPoint)>>,
+    images: Vec<Vec<Seen>>,
     /// Principal distance and point of the true camera, mm.
     interior: [f64; 3],
     /// How far the cameras that are never calibrated are from the true one, px, or why they cannot be compared.

@@ -316,7 +316,7 @@ fn a_bent_board_has_its_crest_in_its_middle() {
     let calibench_scenario::Subject::Views(views) = &scenario.subject else { panic!("views") };
     let board = views.transfer.as_ref().unwrap().board.as_ref().unwrap();
     let heights: Vec<f64> =
-        super::drawn::bent(board, 0.8).iter().zip(&board.field.targets).map(|(bent, flat)| bent.z - flat.surveyed.z).collect();
+        super::bent::bent(board, 0.8).iter().zip(&board.field.targets).map(|(bent, flat)| bent.z - flat.surveyed.z).collect();
     assert_eq!(heights.len(), 54);
     for row in heights.chunks(9) {
         let expected = |i: usize| 0.8 * (1.0 - ((i as f64 - 4.0) / 4.0).powi(2));
