@@ -1,6 +1,6 @@
 //! What was looked for in the residuals, and what was found.
 
-use crate::{Doubt, Subject};
+use crate::{Doubt, Finding, Subject};
 
 /// Times the standard deviation of the camera over the frame (RMS, after the best rotation) by which a structure must move it to count.
 pub const SHARE: f64 = 3.0;
@@ -25,17 +25,6 @@ pub enum Verdict {
     Slight(Finding, String),
     /// A structure that moves the camera, and its most likely cause in words.
     Doubt(Finding, String),
-}
-
-/// How strong a structure is, and what it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finding {
-    /// Probability of residuals as uneven by chance.
-    pub p: f64,
-    /// By how many of its standard deviations over the frame the camera moves when the structure is allowed for; `None` if that cannot be said.
-    pub moves: Option<f64>,
-    /// Share of the variance of unit weight, 0 to 1, that goes when the structure is allowed for; 0 where nothing more was allowed for.
-    pub explains: f64,
 }
 
 impl Finding {

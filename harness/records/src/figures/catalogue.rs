@@ -1,7 +1,28 @@
 //! Every figure that records hold.
 
-use super::entry::Units::{Either, Number, Object, One, Parameter};
-use super::{Better, Entry, Group, Kind};
+use super::terms::Units::{Either, Number, Object, One, Parameter};
+use super::{Better, Group, Kind, Units};
+
+/// A row of the catalogue.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// What it is of.
+    pub quantity: Quantity,
+    /// Its group.
+    pub group: Group,
+    /// Its name in files. `{}` stands for what it is of (a station, a point, a cause), `{size}` for a size group, `{how}` for `single` or `joint`.
+    pub pattern: &'static str,
+    /// Its units.
+    pub units: Units,
+    /// Digits behind the point on pages, where a page has no reason for others.
+    pub digits: usize,
+    /// Which value is better.
+    pub better: Better,
+    /// The kind of result that alone has it; `None` for what several have.
+    pub kind: Option<Kind>,
+    /// What it means.
+    pub meaning: &'static str,
+}
 
 macro_rules! catalogue {
     ($($quantity:ident: $group:ident $pattern:literal in $units:expr, $digits:literal, $better:ident, $kind:expr, $meaning:literal;)*) => {

@@ -1,7 +1,5 @@
 //! What the catalogue says of a quantity.
 
-use super::Quantity;
-
 /// What a figure is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Group {
@@ -123,25 +121,4 @@ impl Better {
             Self::Neither => "",
         }
     }
-}
-
-/// A row of the catalogue.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry {
-    /// What it is of.
-    pub quantity: Quantity,
-    /// Its group.
-    pub group: Group,
-    /// Its name in files. `{}` stands for what it is of (a station, a point, a cause), `{size}` for a size group, `{how}` for `single` or `joint`.
-    pub pattern: &'static str,
-    /// Its units.
-    pub units: Units,
-    /// Digits behind the point on pages, where a page has no reason for others.
-    pub digits: usize,
-    /// Which value is better.
-    pub better: Better,
-    /// The kind of result that alone has it; `None` for what several have.
-    pub kind: Option<Kind>,
-    /// What it means.
-    pub meaning: &'static str,
 }
