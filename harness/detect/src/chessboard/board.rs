@@ -6,7 +6,6 @@ use super::complete::extent;
 use super::grow::Grid;
 use super::level::{Level, scaled};
 use super::sectors::{Steps, contrast};
-use super::straight::{Corners, is_flat, straighten};
 use crate::plane::{Point, cross, length, minus, plus, times};
 
 /// The contrast at a corner is this share of the middle one of all at least.
@@ -26,6 +25,8 @@ pub(super) struct Board {
     pub rows: usize,
     /// Where, px of the image.
     pub corners: Vec<Point>,
+    /// Whether it is seen there, or where the others have it.
+    pub seen: Vec<bool>,
 }
 
 impl Board {
@@ -35,7 +36,8 @@ impl Board {
         let size = |axis: usize| (high[axis] - low[axis] + 1) as usize;
         let places = (low[1]..=high[1]).flat_map(|v| (low[0]..=high[0]).map(move |u| [u, v]));
         let corners: Option<Vec<Point>> = places.map(|place| grid.get(&place).map(|saddle| scaled(saddle.at, level.factor))).collect();
-        Some(Self { columns: size(0), rows: size(1), corners: corners? })
+        let corners = corners?;
+        Some(Self { columns: size(0), rows: size(1), seen: vec![true; corners.len()], corners })
     }
 
     /// The area between its outermost corners, px^2.
@@ -49,26 +51,20 @@ impl Board {
         [index % self.columns, index / self.columns]
     }
 
-    fn by_place(&self) -> Corners {
-        let place = |index: usize| self.place(index).map(|at| at as i32);
-        self.corners.iter().enumerate().map(|(index, at)| (place(index), *at)).collect()
-    }
-
-    /// Puts few corners that are off to where the others have them; whether there were any.
-    pub(super) fn straighten(&mut self) -> bool {
-        let mut corners = self.by_place();
-        let moved = straighten(&mut corners);
-        for ([column, row], at) in corners {
-            self.corners[row as usize * self.columns + column as usize] = at;
-        }
-        moved
-    }
-
     /// Where the corner `by` columns and rows from another is.
-    fn beside(&self, index: usize, [u, v]: [i32; 2]) -> Option<Point> {
+    pub(super) fn beside(&self, index: usize, by: [i32; 2]) -> Option<Point> {
+        self.index_beside(index, by).map(|index| self.corners[index])
+    }
+
+    /// Whether the corner there is seen.
+    pub(super) fn sees(&self, index: usize, by: [i32; 2]) -> bool {
+        self.index_beside(index, by).is_some_and(|index| self.seen[index])
+    }
+
+    fn index_beside(&self, index: usize, [u, v]: [i32; 2]) -> Option<usize> {
         let [column, row] = self.place(index);
         let (column, row) = (column.checked_add_signed(u as isize)?, row.checked_add_signed(v as isize)?);
-        (column < self.columns && row < self.rows).then(|| self.corners[row * self.columns + column])
+        (column < self.columns && row < self.rows).then(|| row * self.columns + column)
     }
 
     /// Its columns and rows, the larger first: which of them are columns nobody said.
@@ -157,14 +153,15 @@ impl Board {
 
     /// Whether these are the corners of a board, all of them.
     pub(super) fn stands(&self, image: &Image) -> bool {
-        self.is_resolved() && self.contrasts(image).is_some() && is_flat(&self.by_place()) && !self.is_larger(image)
+        self.is_resolved() && self.contrasts(image).is_some() && self.is_settled() && !self.is_larger(image)
     }
 
     /// Turned by a quarter: the last of each row comes first.
     fn turned(&self) -> Self {
         let place = |index: usize| (index % self.rows) * self.columns + (self.columns - 1 - index / self.rows);
-        let corners = (0..self.corners.len()).map(|index| self.corners[place(index)]).collect();
-        Self { columns: self.rows, rows: self.columns, corners }
+        let places = || (0..self.corners.len()).map(place);
+        let corners = places().map(|place| self.corners[place]).collect();
+        Self { columns: self.rows, rows: self.columns, corners, seen: places().map(|place| self.seen[place]).collect() }
     }
 
     /// Whether the square before the first corner on both axes is dark.

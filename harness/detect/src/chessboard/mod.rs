@@ -3,10 +3,14 @@
 mod board;
 pub(crate) mod candidates;
 pub(crate) mod complete;
+mod crossing;
+mod forecast;
 pub(crate) mod grow;
 pub(crate) mod level;
+mod peak;
 pub(crate) mod refine;
 pub(crate) mod sectors;
+mod settle;
 pub(crate) mod sheet;
 pub(crate) mod side;
 mod straight;
@@ -21,7 +25,7 @@ use candidates::Saddles;
 use complete::complete;
 use grow::{Grid, Grids};
 use level::{Level, Pyramid};
-use refine::{Around, refined};
+use refine::Around;
 use side::Sides;
 
 use crate::{Found, NotFound, corners};
@@ -53,11 +57,12 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
     let board = seen.ok_or_else(|| NotFound::NoChessboard { columns, rows, other: other.map(|other| other.counts()) })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
     let turned = u32::from(!board.starts_dark(&image));
+    let seen = layout.points.iter().enumerate().filter(|(index, _)| board.seen[*index]);
     let point = |(index, own): (usize, &BoardPoint)| {
         let linear = board.steps(index)?.linear(square);
         Some(corners::found(index, &BoardPoint { turns: own.turns + turned, ..own.clone() }, board.corners[index], linear))
     };
-    let points = layout.points.iter().enumerate().filter_map(point).collect();
+    let points = seen.filter_map(point).collect();
     Ok(Found { points, markers: 0, doubts: Vec::new() })
 }
 
@@ -97,23 +102,6 @@ fn whole(pyramid: &Pyramid, level: &Level, grid: Grid) -> Option<Board> {
     let mut board = Board::new(level, &complete(level, grid, usize::MAX)?)?;
     board.settle(pyramid, level.factor);
     (board.corners.len() >= FEWEST && board.stands(pyramid.image()) && board.is_inside(pyramid.image())).then_some(board)
-}
-
-impl Board {
-    /// Its corners to where the image has them.
-    fn settle(&mut self, pyramid: &Pyramid, factor: f64) {
-        self.refine(pyramid, factor);
-        // What was far off may be met from where it is now.
-        if self.straighten() {
-            self.refine(pyramid, factor);
-            self.straighten();
-        }
-    }
-
-    fn refine(&mut self, pyramid: &Pyramid, factor: f64) {
-        let steps: Vec<f64> = (0..self.corners.len()).map(|index| self.step(index)).collect();
-        self.corners = refined(pyramid, &self.corners, &steps, AROUND, factor);
-    }
 }
 
 /// The image with numbers everywhere.

@@ -65,7 +65,7 @@ impl Sheet {
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();
         let places: Vec<Point> = corners.values().copied().collect();
         let found = refined(pyramid, &places, &lengths, reading.around, level.factor);
-        let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
+        let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found.into_iter().map(|(at, _)| at)).collect();
         let mut sorted = lengths;
         sorted.sort_by(f64::total_cmp);
         if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < reading.near) {
