@@ -8,8 +8,10 @@ use super::grow::Place;
 use crate::ground::grey;
 use crate::plane::{Linear, Point, length, minus, plus, times};
 
-/// How far along both steps the middle of a sector lies, and how far around it samples are taken.
-const MIDDLE: f64 = 0.22;
+/// How far along both steps the middle of a sector lies: farther where that is too near to the corner, px, up to what dots in squares leave; and how far around it
+/// samples are taken.
+const MIDDLE: [f64; 2] = [0.22, 0.33];
+const LEAST_MIDDLE: f64 = 3.0;
 const AROUND: [f64; 3] = [-0.08, 0.0, 0.08];
 /// The darker of two light sectors is lighter than the lighter of two dark ones by this share of the difference of their means.
 const SHARE: f64 = 0.08;
@@ -60,9 +62,11 @@ pub(crate) struct Contrast {
 }
 
 /// The contrast of the sectors around a corner; `None` if no two are lighter than the others.
-pub(crate) fn contrast(image: &Image, at: Point, Steps([u, v]): &Steps) -> Option<Contrast> {
+pub(crate) fn contrast(image: &Image, at: Point, steps: &Steps) -> Option<Contrast> {
+    let Steps([u, v]) = steps;
+    let middle = (LEAST_MIDDLE / steps.shorter()).clamp(MIDDLE[0], MIDDLE[1]);
     let sector = |a: f64, b: f64| {
-        let samples = AROUND.iter().flat_map(|i| AROUND.iter().map(move |k| [a * MIDDLE + i, b * MIDDLE + k]));
+        let samples = AROUND.iter().flat_map(|i| AROUND.iter().map(move |k| [a * middle + i, b * middle + k]));
         samples.map(|[i, k]| grey(image, plus(at, plus(times(*u, i), times(*v, k))))).sum::<f64>() / 9.0
     };
     let (same, other) = ([sector(1.0, 1.0), sector(-1.0, -1.0)], [sector(1.0, -1.0), sector(-1.0, 1.0)]);

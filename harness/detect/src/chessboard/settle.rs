@@ -45,29 +45,36 @@ impl Board {
         for (index, sides) in sides.into_iter().enumerate() {
             match sides {
                 Crossing::At(at) | Crossing::Peak(at) if met[index] && self.is_same(index, at) => {}
-                Crossing::Peak(at) if !met[index] => self.corners[index] = at,
-                _ => doubtful.push((index, sides)),
+                _ => doubtful.push((index, sides, self.corners[index])),
             }
         }
-        doubtful.iter().for_each(|(index, _)| self.seen[*index] = false);
-        for (index, sides) in doubtful {
-            self.examine(pyramid, index, sides, met[index]);
+        // Of small squares the saddle is nearer to the truth than where blurred edges meet; of others neither is known.
+        for (index, sides, _) in &doubtful {
+            match sides {
+                Crossing::Peak(at) => self.corners[*index] = *at,
+                _ => self.seen[*index] = false,
+            }
+        }
+        for (index, sides, at) in doubtful {
+            self.examine(pyramid, index, sides, met[index].then_some(at));
         }
     }
 
-    /// Looks for a corner of which nothing else agrees with the edges that meet in it, if `met`.
-    fn examine(&mut self, pyramid: &Pyramid, index: usize, sides: Crossing, met: bool) {
+    /// Looks for a corner at which the edges that meet in it, if they do, and its sides do not agree: the other corners decide.
+    fn examine(&mut self, pyramid: &Pyramid, index: usize, sides: Crossing, met: Option<Point>) {
         let Some(forecast) = self.forecast(index) else { return };
         let step = self.step(index);
-        let off = forecast.off(self.corners[index]);
         let elsewhere = sides.at().or_else(|| forecast.places().find_map(|place| self.sides(pyramid, index, place).at()));
-        let elsewhere = elsewhere.filter(|at| forecast.off(*at) < BENT * step + BENT_PX);
-        if met && off < OFF * step + OFF_PX {
-            self.seen[index] = true;
-        } else if let Some(at) = elsewhere.filter(|at| !met || forecast.off(*at) < off) {
-            self.put(pyramid, index, at);
-        } else if let Some(at) = forecast.places().next() {
-            self.corners[index] = at;
+        let elsewhere = elsewhere.map(|at| (at, forecast.off(at))).filter(|(_, off)| *off < BENT * step + BENT_PX);
+        let met = met.map(|at| (at, forecast.off(at))).filter(|(_, off)| *off < OFF * step + OFF_PX);
+        self.seen[index] = true;
+        match (met, elsewhere) {
+            (Some((at, off)), other) if other.is_none_or(|(_, other)| off <= other) => self.corners[index] = at,
+            (_, Some((at, _))) => self.put(pyramid, index, at),
+            _ => {
+                self.corners[index] = forecast.places().next().unwrap_or(self.corners[index]);
+                self.seen[index] = false;
+            }
         }
     }
 
@@ -80,8 +87,8 @@ impl Board {
         let Some(light) = Steps::at(own, beside).and_then(|steps| contrast(image, own, &steps)) else { return Crossing::Unseen };
         match crossing(image, own, light.mean, beside) {
             Crossing::At(at) => Crossing::At(scaled(at, of)),
-            // Squares that are so small are looked at in the image as it is.
-            Crossing::Unresolved => saddle(image, own, short).map_or(Crossing::Unseen, Crossing::Peak),
+            // Of squares that are small beside the blur no sides may be seen. They are looked at in the image as it is.
+            Crossing::Unresolved | Crossing::Unseen if of == 1.0 => saddle(image, own, short).map_or(Crossing::Unseen, Crossing::Peak),
             other => other,
         }
     }
@@ -97,7 +104,6 @@ impl Board {
         if met && self.is_same(index, near) {
             self.corners[index] = near;
         }
-        self.seen[index] = true;
     }
 
     /// Where those that are seen have a corner.

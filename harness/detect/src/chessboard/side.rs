@@ -23,6 +23,8 @@ const LEAST_BESIDE: f64 = 1.0;
 const EVEN: f64 = 0.05;
 /// Sine of the angle between a side and the middles of the sectors beside it, at least.
 const SLANT: f64 = 0.12;
+/// A side that is shorter, px of the level, is not looked at near its ends.
+const SHORT: f64 = 12.0;
 /// Cosine of the angle between the light of neighbours, which are a quarter turn apart, at most.
 const TURN: f64 = 0.55;
 
@@ -48,7 +50,11 @@ pub(super) fn is_side(level: &Level, a: &Saddle, b: &Saddle) -> bool {
         let at = plus(a.at, times(way, share * far));
         grey(&level.smooth, plus(at, beside)) - grey(&level.smooth, plus(at, times(beside, -1.0)))
     };
-    let Sides(along) = level.sides;
+    let Sides(mut along) = level.sides;
+    // Near to its ends a short side is lost in the blur.
+    if far < SHORT {
+        along = &along[1..along.len() - 1];
+    }
     let differences = || along.iter().map(|share| difference(*share));
     let least = differences().fold(f64::INFINITY, f64::min);
     let greatest = differences().fold(f64::NEG_INFINITY, f64::max);
