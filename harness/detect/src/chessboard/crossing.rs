@@ -167,15 +167,16 @@ impl Side<'_> {
         let half = (reach / apart) as usize;
         let (middle, step) = (plus(self.own, self.along.at(steps)), times(self.across, apart / across));
         let sign = self.light.signum() * steps.signum();
-        // Two samples more on each side: the rise is over four of them.
-        let far = half as f64 + 2.0;
-        let mut profile = [0.0; 2 * SAMPLES + 5];
-        let count = 2 * half + 5;
+        // Three samples more on each side: a rise is over five of them, and has neighbours.
+        let far = half as f64 + 3.0;
+        let mut profile = [0.0; 2 * SAMPLES + 7];
+        let count = 2 * half + 7;
         for (index, value) in profile[..count].iter_mut().enumerate() {
             *value = sign * grey(self.image, plus(middle, times(step, index as f64 - far)));
         }
-        let rise = |index: usize| profile[index + 1] - profile[index - 1];
-        let best = (2..count - 2).max_by(|a, b| rise(*a).total_cmp(&rise(*b)))?;
+        // Of values that are smoothed by 1 2 1.
+        let rise = |index: usize| 0.25 * (profile[index + 2] - profile[index - 2]) + 0.5 * (profile[index + 1] - profile[index - 1]);
+        let best = (3..count - 3).max_by(|a, b| rise(*a).total_cmp(&rise(*b)))?;
         if profile[best + 2] - profile[best - 2] < RISE * self.light.abs() {
             return None;
         }

@@ -23,7 +23,7 @@ const OFF_PX: f64 = 0.75;
 const LOOKED_AT: f64 = 20.0;
 /// How far any corner may.
 const ASTRAY: f64 = 0.3;
-/// So large a share of the corners may be unseen.
+/// So large a share of the corners may be unseen, or one.
 const UNSEEN: f64 = 0.06;
 
 impl Board {
@@ -64,18 +64,24 @@ impl Board {
     fn examine(&mut self, pyramid: &Pyramid, index: usize, sides: Crossing, met: Option<Point>) {
         let Some(forecast) = self.forecast(index) else { return };
         let step = self.step(index);
-        let elsewhere = sides.at().or_else(|| forecast.places().find_map(|place| self.sides(pyramid, index, place).at()));
-        let elsewhere = elsewhere.map(|at| (at, forecast.off(at))).filter(|(_, off)| *off < BENT * step + BENT_PX);
-        let met = met.map(|at| (at, forecast.off(at))).filter(|(_, off)| *off < OFF * step + OFF_PX);
-        self.seen[index] = true;
-        match (met, elsewhere) {
-            (Some((at, off)), other) if other.is_none_or(|(_, other)| off <= other) => self.corners[index] = at,
-            (_, Some((at, _))) => self.put(pyramid, index, at),
-            _ => {
-                self.corners[index] = forecast.places().next().unwrap_or(self.corners[index]);
-                self.seen[index] = false;
-            }
+        let limit = BENT * step + BENT_PX;
+        let beside = |at: Point| [self.sides(pyramid, index, at).at(), self.peak(pyramid, index, at)];
+        let seen = sides.at().into_iter().chain(std::iter::once(self.corners[index]).chain(forecast.places()).flat_map(beside).flatten());
+        let seen = seen.map(|at| (at, limit, false)).chain(met.map(|at| (at, OFF * step + OFF_PX, true)));
+        let near = seen.map(|(at, limit, met)| (at, forecast.off(at), limit, met)).filter(|(_, off, limit, _)| off < limit);
+        let nearest = near.min_by(|a, b| a.1.total_cmp(&b.1));
+        self.seen[index] = nearest.is_some();
+        match nearest {
+            Some((at, _, _, true)) => self.corners[index] = at,
+            Some((at, ..)) => self.put(pyramid, index, at),
+            None => self.corners[index] = forecast.places().next().unwrap_or(self.corners[index]),
         }
+    }
+
+    /// The saddle where a corner is at a place, in the image as it is; of squares that are large beside any blur it tells less than their sides.
+    fn peak(&self, pyramid: &Pyramid, index: usize, at: Point) -> Option<Point> {
+        let short = self.step(index);
+        if short > 2.0 * LOOKED_AT { None } else { saddle(pyramid.image(), at, short) }
     }
 
     /// What the sides around a corner tell if it is at a place.
@@ -87,9 +93,8 @@ impl Board {
         let Some(light) = Steps::at(own, beside).and_then(|steps| contrast(image, own, &steps)) else { return Crossing::Unseen };
         match crossing(image, own, light.mean, beside) {
             Crossing::At(at) => Crossing::At(scaled(at, of)),
-            // Of squares that are small beside the blur no sides may be seen. They are looked at in the image as it is.
-            Crossing::Unresolved | Crossing::Unseen if of == 1.0 => saddle(image, own, short).map_or(Crossing::Unseen, Crossing::Peak),
-            other => other,
+            // Of squares that are small beside the blur no sides may be seen.
+            other => self.peak(pyramid, index, at).map_or(other, Crossing::Peak),
         }
     }
 
@@ -114,8 +119,9 @@ impl Board {
     /// Whether nearly all corners are seen, about where the others have them.
     pub(super) fn is_settled(&self) -> bool {
         let unseen = self.seen.iter().filter(|seen| !**seen).count();
+        let most = (UNSEEN * self.seen.len() as f64).max(1.0);
         let astray =
             |index: usize| self.forecast(index).is_none_or(|all| all.off(self.corners[index]) > ASTRAY * self.step(index) + BENT_PX);
-        unseen as f64 <= UNSEEN * self.seen.len() as f64 && !(0..self.corners.len()).any(astray)
+        unseen as f64 <= most && !(0..self.corners.len()).any(astray)
     }
 }
