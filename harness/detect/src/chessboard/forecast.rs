@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::grow::Place;
-use crate::plane::{Homography, Point, distance};
+use crate::plane::{Homography, Point, distance, plus, times};
 
 /// How far away corners are that the polynomial is adjusted to, steps.
 const FAR: i32 = 2;
@@ -19,8 +19,8 @@ const MIDDLES: [Place; 9] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [
 pub(super) struct Forecast {
     /// By the homography of the eight others of nine, and how much worse than in their middle it knows; `None` where no such eight are there.
     plane: Option<(Point, f64)>,
-    /// By the polynomial of second degree of all around.
-    bent: Point,
+    /// By the polynomial of second degree of all around, and how much worse it knows.
+    bent: (Point, f64),
 }
 
 impl Forecast {
@@ -41,35 +41,41 @@ impl Forecast {
 
     /// How far a point is off, relative to what the corners around know, px: from the nearer of the two.
     pub(super) fn off(&self, at: Point) -> f64 {
-        let bent = distance(at, self.bent);
-        self.plane.map_or(bent, |(plane, factor)| bent.min(distance(at, plane) / factor))
+        let off = |(place, factor): (Point, f64)| distance(at, place) / factor;
+        self.plane.map_or(off(self.bent), |plane| off(plane).min(off(self.bent)))
     }
 
     /// Where it is expected, the likelier first.
     pub(super) fn places(&self) -> impl Iterator<Item = Point> {
-        [Some(self.bent), self.plane.map(|(plane, _)| plane)].into_iter().flatten()
+        [Some(self.bent), self.plane].into_iter().flatten().map(|(at, _)| at)
     }
 }
 
-/// By a polynomial of second degree; nearer corners weigh more.
-fn bent(beside: &impl Fn(Place) -> Option<Point>) -> Option<Point> {
+/// By a polynomial of second degree, and by how much an error there exceeds one of the others; nearer corners weigh more.
+fn bent(beside: &impl Fn(Place) -> Option<Point>) -> Option<(Point, f64)> {
     let mut normal = SMatrix::<f64, 6, 6>::zeros();
-    let mut right = [SVector::<f64, 6>::zeros(), SVector::<f64, 6>::zeros()];
-    let mut count = 0;
+    let mut corners = Vec::with_capacity(24);
     for by in (-FAR..=FAR).flat_map(|v| (-FAR..=FAR).map(move |u| [u, v])).filter(|by| *by != [0, 0]) {
         let Some(at) = beside(by) else { continue };
         let [u, v] = by.map(f64::from);
         let row = SVector::<f64, 6>::from([1.0, u, v, u * u, u * v, v * v]);
         let weight = 1.0 / (u * u + v * v).powi(2);
         normal += row * row.transpose() * weight;
-        right.iter_mut().zip(at).for_each(|(right, at)| *right += row * (weight * at));
-        count += 1;
+        corners.push((row * weight, at));
     }
     // Corners may lie so that they do not determine the terms of second degree.
     (3..6).for_each(|term| normal[(term, term)] += STIFF);
-    let solved = normal.cholesky().filter(|_| count >= 6)?;
-    let [x, y] = right.map(|right| solved.solve(&right)[0]);
-    (x.is_finite() && y.is_finite()).then_some([x, y])
+    let solved = normal.cholesky().filter(|_| corners.len() >= 6)?;
+    let first = solved.solve(&SVector::<f64, 6>::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
+    let (mut sum, mut share, mut squares) = ([0.0; 2], 0.0, 1.0);
+    for (row, at) in corners {
+        let own = row.dot(&first);
+        sum = plus(sum, times(at, own));
+        share += own;
+        squares += own * own;
+    }
+    let at = times(sum, 1.0 / share);
+    at.iter().all(|part| part.is_finite()).then_some((at, squares.sqrt()))
 }
 
 #[cfg(test)]
