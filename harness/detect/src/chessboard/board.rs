@@ -27,6 +27,8 @@ pub(super) struct Board {
     pub corners: Vec<Point>,
     /// Whether it is seen there, or where the others have it.
     pub seen: Vec<bool>,
+    /// Whether the square before the first corner on both axes is dark; known of what [`Board::stands`].
+    pub starts_dark: bool,
 }
 
 impl Board {
@@ -37,7 +39,7 @@ impl Board {
         let places = (low[1]..=high[1]).flat_map(|v| (low[0]..=high[0]).map(move |u| [u, v]));
         let corners: Option<Vec<Point>> = places.map(|place| grid.get(&place).map(|saddle| scaled(saddle.at, level.factor))).collect();
         let corners = corners?;
-        Some(Self { columns: size(0), rows: size(1), seen: vec![true; corners.len()], corners })
+        Some(Self { columns: size(0), rows: size(1), seen: vec![true; corners.len()], corners, starts_dark: false })
     }
 
     /// The area between its outermost corners, px^2.
@@ -56,9 +58,9 @@ impl Board {
         self.index_beside(index, by).map(|index| self.corners[index])
     }
 
-    /// Whether the corner there is seen.
-    pub(super) fn sees(&self, index: usize, by: [i32; 2]) -> bool {
-        self.index_beside(index, by).is_some_and(|index| self.seen[index])
+    /// The same of a corner that is seen.
+    pub(super) fn seen_beside(&self, index: usize, by: [i32; 2]) -> Option<Point> {
+        self.index_beside(index, by).filter(|index| self.seen[*index]).map(|index| self.corners[index])
     }
 
     fn index_beside(&self, index: usize, [u, v]: [i32; 2]) -> Option<usize> {
@@ -152,8 +154,10 @@ impl Board {
     }
 
     /// Whether these are the corners of a board, all of them.
-    pub(super) fn stands(&self, image: &Image) -> bool {
-        self.is_resolved() && self.contrasts(image).is_some() && self.is_settled() && !self.is_larger(image)
+    pub(super) fn stands(&mut self, image: &Image) -> bool {
+        let Some(contrasts) = self.contrasts(image).filter(|_| self.is_resolved()) else { return false };
+        self.starts_dark = contrasts.iter().sum::<f64>() < 0.0;
+        self.is_settled() && !self.is_larger(image)
     }
 
     /// Turned by a quarter: the last of each row comes first.
@@ -161,20 +165,17 @@ impl Board {
         let place = |index: usize| (index % self.rows) * self.columns + (self.columns - 1 - index / self.rows);
         let places = || (0..self.corners.len()).map(place);
         let corners = places().map(|place| self.corners[place]).collect();
-        Self { columns: self.rows, rows: self.columns, corners, seen: places().map(|place| self.seen[place]).collect() }
-    }
-
-    /// Whether the square before the first corner on both axes is dark.
-    pub(super) fn starts_dark(&self, image: &Image) -> bool {
-        self.contrasts(image).is_some_and(|all| all.iter().sum::<f64>() < 0.0)
+        let seen = places().map(|place| self.seen[place]).collect();
+        // Along a row dark and light squares alternate.
+        Self { columns: self.rows, rows: self.columns, corners, seen, starts_dark: self.starts_dark == self.columns.is_multiple_of(2) }
     }
 
     /// With the counts that are asked for, from the start that the rule of order has; `None` if it has other counts.
-    pub(super) fn ordered(self, image: &Image, columns: usize, rows: usize) -> Option<Self> {
+    pub(super) fn ordered(self, columns: usize, rows: usize) -> Option<Self> {
         let turns = std::iter::successors(Some(self), |board| Some(board.turned())).take(4);
         let mut turns: Vec<Self> = turns.filter(|board| (board.columns, board.rows) == (columns, rows)).collect();
-        if turns.iter().any(|board| board.starts_dark(image)) {
-            turns.retain(|board| board.starts_dark(image));
+        if turns.iter().any(|board| board.starts_dark) {
+            turns.retain(|board| board.starts_dark);
         }
         turns.into_iter().min_by(|a, b| length(a.corners[0]).total_cmp(&length(b.corners[0])))
     }

@@ -6,12 +6,12 @@ use crate::ground::grey;
 use crate::plane::{Point, length, minus, plus, times};
 
 /// Where along the sides they are measured, steps from the corner; nearer than this to it, px, what is across one side belongs to the other, too.
-const ALONG: [f64; 5] = [0.12, 0.2, 0.28, 0.36, 0.44];
+const ALONG: [f64; 4] = [0.14, 0.24, 0.34, 0.44];
 const LEAST_ALONG: f64 = 1.5;
 /// How far across a side it is looked for, as a share of the step there; px at least, and so many samples on both sides.
 const ACROSS: f64 = 0.25;
 const LEAST_ACROSS: f64 = 2.5;
-const SAMPLES: usize = 10;
+const SAMPLES: usize = 8;
 /// Samples are so far apart at least, px.
 const APART: f64 = 0.75;
 /// Where a step is shorter than this, px, what is across a side reaches to the next one.
@@ -28,7 +28,7 @@ const NEAR_SHARE: f64 = 0.012;
 const SLOPE: f64 = 0.4;
 /// From where the sides meet they are measured again, so many times, until they meet within this, px.
 const ROUNDS: usize = 3;
-const LAST: f64 = 0.3;
+const LAST: f64 = 0.5;
 
 /// What the sides around a corner tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,5 +195,5 @@ fn fitted(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let spread: f64 = points.iter().map(|point| (point[0] - s).powi(2)).sum();
     let together: f64 = points.iter().map(|point| (point[0] - s) * (point[1] - y)).sum();
     let slope = together / spread;
-    slope.is_finite().then(|| [y - slope * s, slope])
+    slope.is_finite().then_some([y - slope * s, slope])
 }

@@ -39,6 +39,11 @@ impl Forecast {
         Some(Self { plane, bent })
     }
 
+    /// How far a point is off by the polynomial alone, relative to what the corners around know, px: sooner told than by both.
+    pub(super) fn off_bent(at: Point, beside: impl Fn(Place) -> Option<Point>) -> Option<f64> {
+        bent(&beside).map(|(place, factor)| distance(at, place) / factor)
+    }
+
     /// How far a point is off, relative to what the corners around know, px: from the nearer of the two.
     pub(super) fn off(&self, at: Point) -> f64 {
         let off = |(place, factor): (Point, f64)| distance(at, place) / factor;

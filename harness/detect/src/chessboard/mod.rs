@@ -56,7 +56,7 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
     let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, [columns, rows], &mut other));
     let board = seen.ok_or_else(|| NotFound::NoChessboard { columns, rows, other: other.map(|other| other.counts()) })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
-    let turned = u32::from(!board.starts_dark(&image));
+    let turned = u32::from(!board.starts_dark);
     let seen = layout.points.iter().enumerate().filter(|(index, _)| board.seen[*index]);
     let point = |(index, own): (usize, &BoardPoint)| {
         let linear = board.steps(index)?.linear(square);
@@ -85,7 +85,7 @@ fn largest(pyramid: &Pyramid, level: &Level, [columns, rows]: [usize; 2], other:
         let Some(mut board) = whole.and_then(|grid| Board::new(level, &grid)).filter(counts) else { continue };
         board.settle(pyramid, level.factor);
         if largest.as_ref().is_none_or(|other| other.area() < board.area()) && board.stands(image) {
-            largest = board.ordered(image, columns, rows);
+            largest = board.ordered(columns, rows);
         }
         if largest.as_ref().is_some_and(|board| board.area() > LARGE * (image.width() * image.height()) as f64) {
             break;

@@ -113,15 +113,18 @@ impl Board {
 
     /// Where those that are seen have a corner.
     fn forecast(&self, index: usize) -> Option<Forecast> {
-        Forecast::of(|by| self.beside(index, by).filter(|_| self.sees(index, by)))
+        Forecast::of(|by| self.seen_beside(index, by))
     }
 
     /// Whether nearly all corners are seen, about where the others have them.
     pub(super) fn is_settled(&self) -> bool {
         let unseen = self.seen.iter().filter(|seen| !**seen).count();
         let most = (UNSEEN * self.seen.len() as f64).max(1.0);
-        let astray =
-            |index: usize| self.forecast(index).is_none_or(|all| all.off(self.corners[index]) > ASTRAY * self.step(index) + BENT_PX);
+        let astray = |index: usize| {
+            let (at, limit) = (self.corners[index], ASTRAY * self.step(index) + BENT_PX);
+            let is_near = Forecast::off_bent(at, |by| self.seen_beside(index, by)).is_some_and(|off| off <= limit);
+            !is_near && self.forecast(index).is_none_or(|all| all.off(at) > limit)
+        };
         unseen as f64 <= most && !(0..self.corners.len()).any(astray)
     }
 }
