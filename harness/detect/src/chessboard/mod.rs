@@ -1,4 +1,4 @@
-//! Chessboards without markers: saddles of the grey values, grown to a grid, completed to a rectangle and proved square by square.
+//! Chessboards without markers: saddles of the grey values, grown to a grid, completed to a rectangle, seen corner by corner and proved square by square.
 
 mod board;
 pub(crate) mod candidates;
@@ -28,7 +28,7 @@ use level::{Level, Pyramid};
 use refine::Around;
 use side::Sides;
 
-use crate::{Found, NotFound, corners};
+use crate::{Doubt, Found, NotFound, corners};
 
 /// What is looked at around corners that nothing is near.
 pub(crate) const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
@@ -39,7 +39,8 @@ const FEWEST: usize = 12;
 
 /// The inner corners of a chessboard that is seen whole, to about 0.3 px.
 ///
-/// A board that has more or fewer, or of which a part is hidden, is none; few corners are put where the others have them if the squares around them are seen.
+/// A board that has more or fewer, or of which a part is hidden, is none. A corner is seen where two of three agree: the edges that meet in it, the sides of the squares
+/// around it, which may bow, and the other corners. Few that are not are left out, and said.
 /// Squares may not be smaller than about 6 px. Of several such boards it is the largest. In bounded time.
 ///
 /// Order: the board is taken as seen from its front, so each next row lies clockwise of the way along a row in the image. This leaves two starts for a board, and
@@ -63,7 +64,9 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
         Some(corners::found(index, &BoardPoint { turns: own.turns + turned, ..own.clone() }, board.corners[index], linear))
     };
     let points = seen.filter_map(point).collect();
-    Ok(Found { points, markers: 0, doubts: Vec::new() })
+    let unseen = board.seen.iter().filter(|seen| !**seen).count();
+    let doubts = if unseen > 0 { vec![Doubt::Unseen { corners: unseen }] } else { Vec::new() };
+    Ok(Found { points, markers: 0, doubts })
 }
 
 /// The largest such board at one level: pictures of boards may be in the picture, too. Where there is none, `other` becomes the board of other counts that the

@@ -15,7 +15,7 @@ const SAME: f64 = 1.0;
 const SAME_SHARE: f64 = 0.03;
 /// How far a corner whose sides are not seen may be from where the others have it, as a share of the shorter step, and px more.
 const BENT: f64 = 0.08;
-const BENT_PX: f64 = 1.0;
+const BENT_PX: f64 = 0.75;
 /// So far off a corner is where its edges meet whatever its sides tell.
 const OFF: f64 = 0.025;
 const OFF_PX: f64 = 0.75;
