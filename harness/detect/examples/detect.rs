@@ -17,12 +17,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let spent = start.elapsed().as_secs_f64();
         match found {
             Ok(found) => {
-                eprintln!("{path}: {} marks, {} points, {:?}, {spent:.3} s", found.markers, found.points.len(), found.doubts);
+                eprintln!("{path}: {} marks, {} points, {:?}, {spent:.5} s", found.markers, found.points.len(), found.doubts);
                 for point in &found.points {
                     println!("{path},{},{:.3},{:.3}", layout.points[point.index].id, point.position.x, point.position.y);
                 }
             }
-            Err(error) => eprintln!("{path}: {}: {error}, {spent:.3} s", error.name()),
+            Err(error) => eprintln!("{path}: {}: {error}, {spent:.5} s", error.name()),
         }
     }
     Ok(())

@@ -56,6 +56,11 @@ pub enum Doubt {
         /// How many.
         corners: usize,
     },
+    /// Corners of a chessboard that are not seen where the others have them: left out.
+    Unseen {
+        /// How many.
+        corners: usize,
+    },
     /// Corners of the pattern beyond those that the board has: left out.
     Beyond {
         /// How many.
@@ -70,6 +75,7 @@ impl Doubt {
             Self::Twice { .. } | Self::TwiceCorners { .. } => "twice",
             Self::Stray { .. } | Self::Dots { .. } => "stray",
             Self::Foreign { .. } | Self::Beyond { .. } => "foreign",
+            Self::Unseen { .. } => "unseen",
         }
     }
 }
@@ -82,6 +88,7 @@ impl fmt::Display for Doubt {
             Self::Foreign { id } => write!(f, "mark {id} is none of the board's"),
             Self::TwiceCorners { first, corners } => write!(f, "corners are seen more than once, {corners} in all, the first {first}"),
             Self::Dots { corners } => write!(f, "dots around corners are not the pattern's, {corners} corners left out"),
+            Self::Unseen { corners } => write!(f, "corners are not seen where the others have them, {corners} corners left out"),
             Self::Beyond { corners } => write!(f, "the pattern goes on beyond the board, {corners} corners left out"),
         }
     }

@@ -44,7 +44,7 @@ const LEAST_SIDE: usize = 16;
 
 /// The points of `board` that are seen in `image`, to about a pixel.
 ///
-/// Of boards with markers, ring codes and PuzzleBoards a part is enough, of a chessboard with dots one with all three of them. Chessboards and grids of circles have to be seen whole. Of a chessboard's corners, the ends of the
+/// Of boards with markers, ring codes and PuzzleBoards a part is enough, of a chessboard with dots one with all three of them. Chessboards and grids of circles have to be seen whole; of a chessboard's corners few may be left out that are not seen, which is said. Of a chessboard's corners, the ends of the
 /// board with a dark square at its corner are where `r1c1` can be, where there are such; circles may be dark on light or light on dark. Where a half turn leaves a
 /// board as it was (every symmetric one; an asymmetric one with an even number of rows) `r1c1` is the corner nearest to the upper left of the image, and so is it
 /// among the four quarter turns of a symmetric grid with as many rows as columns.

@@ -6,7 +6,6 @@ use super::complete::extent;
 use super::grow::Grid;
 use super::level::{Level, scaled};
 use super::sectors::{Steps, contrast};
-use super::straight::{Corners, is_flat, straighten};
 use crate::plane::{Point, cross, length, minus, plus, times};
 
 /// The contrast at a corner is this share of the middle one of all at least.
@@ -26,6 +25,10 @@ pub(super) struct Board {
     pub rows: usize,
     /// Where, px of the image.
     pub corners: Vec<Point>,
+    /// Whether it is seen there, or where the others have it.
+    pub seen: Vec<bool>,
+    /// Whether the square before the first corner on both axes is dark; known of what [`Board::stands`].
+    pub starts_dark: bool,
 }
 
 impl Board {
@@ -35,7 +38,8 @@ impl Board {
         let size = |axis: usize| (high[axis] - low[axis] + 1) as usize;
         let places = (low[1]..=high[1]).flat_map(|v| (low[0]..=high[0]).map(move |u| [u, v]));
         let corners: Option<Vec<Point>> = places.map(|place| grid.get(&place).map(|saddle| scaled(saddle.at, level.factor))).collect();
-        Some(Self { columns: size(0), rows: size(1), corners: corners? })
+        let corners = corners?;
+        Some(Self { columns: size(0), rows: size(1), seen: vec![true; corners.len()], corners, starts_dark: false })
     }
 
     /// The area between its outermost corners, px^2.
@@ -49,26 +53,20 @@ impl Board {
         [index % self.columns, index / self.columns]
     }
 
-    fn by_place(&self) -> Corners {
-        let place = |index: usize| self.place(index).map(|at| at as i32);
-        self.corners.iter().enumerate().map(|(index, at)| (place(index), *at)).collect()
-    }
-
-    /// Puts few corners that are off to where the others have them; whether there were any.
-    pub(super) fn straighten(&mut self) -> bool {
-        let mut corners = self.by_place();
-        let moved = straighten(&mut corners);
-        for ([column, row], at) in corners {
-            self.corners[row as usize * self.columns + column as usize] = at;
-        }
-        moved
-    }
-
     /// Where the corner `by` columns and rows from another is.
-    fn beside(&self, index: usize, [u, v]: [i32; 2]) -> Option<Point> {
+    pub(super) fn beside(&self, index: usize, by: [i32; 2]) -> Option<Point> {
+        self.index_beside(index, by).map(|index| self.corners[index])
+    }
+
+    /// The same of a corner that is seen.
+    pub(super) fn seen_beside(&self, index: usize, by: [i32; 2]) -> Option<Point> {
+        self.index_beside(index, by).filter(|index| self.seen[*index]).map(|index| self.corners[index])
+    }
+
+    fn index_beside(&self, index: usize, [u, v]: [i32; 2]) -> Option<usize> {
         let [column, row] = self.place(index);
         let (column, row) = (column.checked_add_signed(u as isize)?, row.checked_add_signed(v as isize)?);
-        (column < self.columns && row < self.rows).then(|| self.corners[row * self.columns + column])
+        (column < self.columns && row < self.rows).then(|| row * self.columns + column)
     }
 
     /// Its columns and rows, the larger first: which of them are columns nobody said.
@@ -154,28 +152,28 @@ impl Board {
     }
 
     /// Whether these are the corners of a board, all of them.
-    pub(super) fn stands(&self, image: &Image) -> bool {
-        self.is_resolved() && self.contrasts(image).is_some() && is_flat(&self.by_place()) && !self.is_larger(image)
+    pub(super) fn stands(&mut self, image: &Image) -> bool {
+        let Some(contrasts) = self.contrasts(image).filter(|_| self.is_resolved()) else { return false };
+        self.starts_dark = contrasts.iter().sum::<f64>() < 0.0;
+        self.is_settled() && !self.is_larger(image)
     }
 
     /// Turned by a quarter: the last of each row comes first.
     fn turned(&self) -> Self {
         let place = |index: usize| (index % self.rows) * self.columns + (self.columns - 1 - index / self.rows);
-        let corners = (0..self.corners.len()).map(|index| self.corners[place(index)]).collect();
-        Self { columns: self.rows, rows: self.columns, corners }
-    }
-
-    /// Whether the square before the first corner on both axes is dark.
-    pub(super) fn starts_dark(&self, image: &Image) -> bool {
-        self.contrasts(image).is_some_and(|all| all.iter().sum::<f64>() < 0.0)
+        let places = || (0..self.corners.len()).map(place);
+        let corners = places().map(|place| self.corners[place]).collect();
+        let seen = places().map(|place| self.seen[place]).collect();
+        // Along a row dark and light squares alternate.
+        Self { columns: self.rows, rows: self.columns, corners, seen, starts_dark: self.starts_dark == self.columns.is_multiple_of(2) }
     }
 
     /// With the counts that are asked for, from the start that the rule of order has; `None` if it has other counts.
-    pub(super) fn ordered(self, image: &Image, columns: usize, rows: usize) -> Option<Self> {
+    pub(super) fn ordered(self, columns: usize, rows: usize) -> Option<Self> {
         let turns = std::iter::successors(Some(self), |board| Some(board.turned())).take(4);
         let mut turns: Vec<Self> = turns.filter(|board| (board.columns, board.rows) == (columns, rows)).collect();
-        if turns.iter().any(|board| board.starts_dark(image)) {
-            turns.retain(|board| board.starts_dark(image));
+        if turns.iter().any(|board| board.starts_dark) {
+            turns.retain(|board| board.starts_dark);
         }
         turns.into_iter().min_by(|a, b| length(a.corners[0]).total_cmp(&length(b.corners[0])))
     }

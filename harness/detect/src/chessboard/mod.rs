@@ -1,12 +1,16 @@
-//! Chessboards without markers: saddles of the grey values, grown to a grid, completed to a rectangle and proved square by square.
+//! Chessboards without markers: saddles of the grey values, grown to a grid, completed to a rectangle, seen corner by corner and proved square by square.
 
 mod board;
 pub(crate) mod candidates;
 pub(crate) mod complete;
+mod crossing;
+mod forecast;
 pub(crate) mod grow;
 pub(crate) mod level;
+mod peak;
 pub(crate) mod refine;
 pub(crate) mod sectors;
+mod settle;
 pub(crate) mod sheet;
 pub(crate) mod side;
 mod straight;
@@ -21,10 +25,10 @@ use candidates::Saddles;
 use complete::complete;
 use grow::{Grid, Grids};
 use level::{Level, Pyramid};
-use refine::{Around, refined};
+use refine::Around;
 use side::Sides;
 
-use crate::{Found, NotFound, corners};
+use crate::{Doubt, Found, NotFound, corners};
 
 /// What is looked at around corners that nothing is near.
 pub(crate) const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
@@ -35,7 +39,8 @@ const FEWEST: usize = 12;
 
 /// The inner corners of a chessboard that is seen whole, to about 0.3 px.
 ///
-/// A board that has more or fewer, or of which a part is hidden, is none; few corners are put where the others have them if the squares around them are seen.
+/// A board that has more or fewer, or of which a part is hidden, is none. A corner is seen where two of three agree: the edges that meet in it, the sides of the squares
+/// around it, which may bow, and the other corners. Few that are not are left out, and said.
 /// Squares may not be smaller than about 6 px. Of several such boards it is the largest. In bounded time.
 ///
 /// Order: the board is taken as seen from its front, so each next row lies clockwise of the way along a row in the image. This leaves two starts for a board, and
@@ -52,13 +57,16 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
     let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, [columns, rows], &mut other));
     let board = seen.ok_or_else(|| NotFound::NoChessboard { columns, rows, other: other.map(|other| other.counts()) })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
-    let turned = u32::from(!board.starts_dark(&image));
+    let turned = u32::from(!board.starts_dark);
+    let seen = layout.points.iter().enumerate().filter(|(index, _)| board.seen[*index]);
     let point = |(index, own): (usize, &BoardPoint)| {
         let linear = board.steps(index)?.linear(square);
         Some(corners::found(index, &BoardPoint { turns: own.turns + turned, ..own.clone() }, board.corners[index], linear))
     };
-    let points = layout.points.iter().enumerate().filter_map(point).collect();
-    Ok(Found { points, markers: 0, doubts: Vec::new() })
+    let points = seen.filter_map(point).collect();
+    let unseen = board.seen.iter().filter(|seen| !**seen).count();
+    let doubts = if unseen > 0 { vec![Doubt::Unseen { corners: unseen }] } else { Vec::new() };
+    Ok(Found { points, markers: 0, doubts })
 }
 
 /// The largest such board at one level: pictures of boards may be in the picture, too. Where there is none, `other` becomes the board of other counts that the
@@ -80,7 +88,7 @@ fn largest(pyramid: &Pyramid, level: &Level, [columns, rows]: [usize; 2], other:
         let Some(mut board) = whole.and_then(|grid| Board::new(level, &grid)).filter(counts) else { continue };
         board.settle(pyramid, level.factor);
         if largest.as_ref().is_none_or(|other| other.area() < board.area()) && board.stands(image) {
-            largest = board.ordered(image, columns, rows);
+            largest = board.ordered(columns, rows);
         }
         if largest.as_ref().is_some_and(|board| board.area() > LARGE * (image.width() * image.height()) as f64) {
             break;
@@ -97,23 +105,6 @@ fn whole(pyramid: &Pyramid, level: &Level, grid: Grid) -> Option<Board> {
     let mut board = Board::new(level, &complete(level, grid, usize::MAX)?)?;
     board.settle(pyramid, level.factor);
     (board.corners.len() >= FEWEST && board.stands(pyramid.image()) && board.is_inside(pyramid.image())).then_some(board)
-}
-
-impl Board {
-    /// Its corners to where the image has them.
-    fn settle(&mut self, pyramid: &Pyramid, factor: f64) {
-        self.refine(pyramid, factor);
-        // What was far off may be met from where it is now.
-        if self.straighten() {
-            self.refine(pyramid, factor);
-            self.straighten();
-        }
-    }
-
-    fn refine(&mut self, pyramid: &Pyramid, factor: f64) {
-        let steps: Vec<f64> = (0..self.corners.len()).map(|index| self.step(index)).collect();
-        self.corners = refined(pyramid, &self.corners, &steps, AROUND, factor);
-    }
 }
 
 /// The image with numbers everywhere.

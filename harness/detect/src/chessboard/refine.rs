@@ -30,17 +30,18 @@ const SHARP: f64 = 0.4;
 /// The smoothing before gradients are taken.
 const BINOMIAL: [f64; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
 
-/// Each corner moved to where the edges around it meet: in the image, or in a coarser one in which they are sharp. It stays where nothing meets near it.
+/// Each corner moved to where the edges around it meet, and whether they do: in the image, or in a coarser one in which they are sharp. It stays where nothing
+/// meets near it.
 /// `steps`: the shorter step from each to a neighbour, px; `factor`: px of the image to one of the level in which they were found.
-pub(crate) fn refined(pyramid: &Pyramid, corners: &[Point], steps: &[f64], around: Around, factor: f64) -> Vec<Point> {
-    let mut best = (f64::INFINITY, corners.to_vec());
+pub(crate) fn refined(pyramid: &Pyramid, corners: &[Point], steps: &[f64], around: Around, factor: f64) -> Vec<(Point, bool)> {
+    let mut best = (f64::INFINITY, corners.iter().map(|at| (*at, false)).collect::<Vec<_>>());
     let Some(step) = upper_median(steps.iter().copied()) else { return best.1 };
     for (image, of) in pyramid.up_to((2.0 * factor).max(1.0)).filter(|(_, of)| *of == 1.0 || step / of >= around.resolved) {
         let met = |(at, step): (&Point, &f64)| {
             let found = meeting(image, scaled(*at, 1.0 / of), step / of, around, factor / of);
-            found.map_or((*at, f64::INFINITY), |(at, variance)| (scaled(at, of), variance))
+            found.map_or(((*at, false), f64::INFINITY), |(at, variance)| ((scaled(at, of), true), variance))
         };
-        let (moved, variances): (Vec<Point>, Vec<f64>) = corners.iter().zip(steps).map(met).unzip();
+        let (moved, variances): (Vec<(Point, bool)>, Vec<f64>) = corners.iter().zip(steps).map(met).unzip();
         let middle = upper_median(variances).map_or(f64::INFINITY, f64::sqrt);
         if middle < best.0 {
             best = (middle, moved);

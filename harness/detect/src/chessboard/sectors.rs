@@ -8,9 +8,14 @@ use super::grow::Place;
 use crate::ground::grey;
 use crate::plane::{Linear, Point, length, minus, plus, times};
 
-/// How far along both steps the middle of a sector lies, and how far around it samples are taken.
-const MIDDLE: f64 = 0.22;
+/// How far along both steps the middle of a sector lies: farther where that is too near to the corner, px, up to what dots in squares leave; and how far around it
+/// samples are taken.
+const MIDDLE: [f64; 2] = [0.22, 0.33];
+const LEAST_MIDDLE: f64 = 3.0;
 const AROUND: [f64; 3] = [-0.08, 0.0, 0.08];
+/// Pixels of the border that are not looked at, and the least share to which sectors are made smaller to be inside.
+const BORDER: f64 = 1.0;
+const LEAST_SHRUNK: f64 = 0.15;
 /// The darker of two light sectors is lighter than the lighter of two dark ones by this share of the difference of their means.
 const SHARE: f64 = 0.08;
 
@@ -59,10 +64,26 @@ pub(crate) struct Contrast {
     pub least: f64,
 }
 
+/// By how much the sectors around a corner, which reach so far along both steps, are smaller where a part of them would be beyond the border of the image.
+fn inside(image: &Image, at: Point, Steps([u, v]): &Steps, reach: f64) -> f64 {
+    let last = [image.width(), image.height()].map(|size| size as f64 - 1.0 - BORDER);
+    let signs = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let share = |[a, b]: [f64; 2], axis: usize| {
+        let way = reach * (a * u[axis] + b * v[axis]);
+        let room = if way < 0.0 { at[axis] - BORDER } else { last[axis] - at[axis] };
+        room / way.abs()
+    };
+    let least = signs.into_iter().flat_map(|sign| [share(sign, 0), share(sign, 1)]).fold(1.0, f64::min);
+    least.clamp(LEAST_SHRUNK, 1.0)
+}
+
 /// The contrast of the sectors around a corner; `None` if no two are lighter than the others.
-pub(crate) fn contrast(image: &Image, at: Point, Steps([u, v]): &Steps) -> Option<Contrast> {
+pub(crate) fn contrast(image: &Image, at: Point, steps: &Steps) -> Option<Contrast> {
+    let Steps([u, v]) = steps;
+    let middle = (LEAST_MIDDLE / steps.shorter()).clamp(MIDDLE[0], MIDDLE[1]);
+    let shrunk = inside(image, at, steps, middle + AROUND[2]);
     let sector = |a: f64, b: f64| {
-        let samples = AROUND.iter().flat_map(|i| AROUND.iter().map(move |k| [a * MIDDLE + i, b * MIDDLE + k]));
+        let samples = AROUND.iter().flat_map(|i| AROUND.iter().map(move |k| [a * middle + i, b * middle + k].map(|part| shrunk * part)));
         samples.map(|[i, k]| grey(image, plus(at, plus(times(*u, i), times(*v, k))))).sum::<f64>() / 9.0
     };
     let (same, other) = ([sector(1.0, 1.0), sector(-1.0, -1.0)], [sector(1.0, -1.0), sector(-1.0, 1.0)]);

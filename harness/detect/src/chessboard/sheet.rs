@@ -67,7 +67,7 @@ impl Sheet {
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();
         let places: Vec<Point> = corners.values().copied().collect();
         let found = refined(pyramid, &places, &lengths, reading.around, level.factor);
-        let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
+        let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found.into_iter().map(|(at, _)| at)).collect();
         if upper_median(lengths).is_some_and(|middle| middle < reading.near) {
             corners = smoothed(&corners);
         } else {

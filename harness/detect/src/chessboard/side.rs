@@ -23,6 +23,10 @@ const LEAST_BESIDE: f64 = 1.0;
 const EVEN: f64 = 0.05;
 /// Sine of the angle between a side and the middles of the sectors beside it, at least.
 const SLANT: f64 = 0.12;
+/// A side that is shorter, px of the level, is not looked at near its ends.
+const SHORT: f64 = 12.0;
+/// By how much a side may bow, as shares of its length: what is beside the straight line is beside one of these.
+const BOWS: [f64; 4] = [0.08, -0.08, 0.16, -0.16];
 /// Cosine of the angle between the light of neighbours, which are a quarter turn apart, at most.
 const TURN: f64 = 0.55;
 
@@ -43,14 +47,28 @@ pub(super) fn is_side(level: &Level, a: &Saddle, b: &Saddle) -> bool {
     if from_a != -from_b {
         return false;
     }
-    let beside = times([-way[1], way[0]], from_a * (BESIDE * far).max(LEAST_BESIDE));
-    let difference = |share: f64| {
-        let at = plus(a.at, times(way, share * far));
-        grey(&level.smooth, plus(at, beside)) - grey(&level.smooth, plus(at, times(beside, -1.0)))
+    let beside = times([-way[1], way[0]], from_a);
+    let off = (BESIDE * far).max(LEAST_BESIDE);
+    let Sides(mut along) = level.sides;
+    // Near to its ends a short side is lost in the blur.
+    if far < SHORT {
+        along = &along[1..along.len() - 1];
+    }
+    let is_light_along = |bow: f64| {
+        let difference = |share: f64| {
+            let bent = 4.0 * bow * far * share * (1.0 - share);
+            let at = plus(a.at, plus(times(way, share * far), times(beside, bent)));
+            grey(&level.smooth, plus(at, times(beside, off))) - grey(&level.smooth, plus(at, times(beside, -off)))
+        };
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for share in along {
+            let own = difference(*share);
+            (least, greatest) = (least.min(own), greatest.max(own));
+            if least <= EVEN * greatest || least <= 0.0 {
+                return false;
+            }
+        }
+        true
     };
-    let Sides(along) = level.sides;
-    let differences = || along.iter().map(|share| difference(*share));
-    let least = differences().fold(f64::INFINITY, f64::min);
-    let greatest = differences().fold(f64::NEG_INFINITY, f64::max);
-    least > EVEN * greatest && least > 0.0
+    is_light_along(0.0) || (far >= SHORT && BOWS.into_iter().any(is_light_along))
 }

@@ -1,4 +1,4 @@
-//! Whether each corner lies where the others around it have it.
+//! Corners that do not lie where the others around them have them, put there.
 
 use std::collections::BTreeMap;
 
@@ -6,9 +6,6 @@ use super::grow::Place;
 use super::sectors::Steps;
 use crate::plane::{Homography, Point, distance};
 
-/// How far a corner may be from where the eight around it have it, as a share of the shorter step, and px more.
-const BENT: f64 = 0.08;
-const BENT_PX: f64 = 1.0;
 /// Farther off than this it is put there.
 const OFF: f64 = 0.025;
 const OFF_PX: f64 = 0.75;
@@ -21,7 +18,7 @@ const EXTRAPOLATION: [f64; 3] = [1.06, 1.18, 1.81];
 const MIDDLES: [Place; 9] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]];
 
 /// Corners by their place.
-pub(super) type Corners = BTreeMap<Place, Point>;
+type Corners = BTreeMap<Place, Point>;
 
 /// Where the eight others of 3 x 3 around a corner have it, and how much worse they know than in their middle; `None` where no such eight are there.
 fn foreseen(corners: &Corners, [u, v]: Place) -> Option<(Point, f64)> {
@@ -59,9 +56,4 @@ pub(super) fn straighten(corners: &mut Corners) -> bool {
         }
     }
     true
-}
-
-/// Whether every corner is where the eight around it have it, about.
-pub(super) fn is_flat(corners: &Corners) -> bool {
-    corners.keys().all(|place| off(corners, *place).is_some_and(|off| off < BENT * step(corners, *place) + BENT_PX))
 }

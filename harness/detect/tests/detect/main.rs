@@ -7,3 +7,4 @@ mod photographs;
 mod picture;
 mod puzzle;
 mod refusals;
+mod wide;

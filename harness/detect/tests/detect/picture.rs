@@ -56,8 +56,7 @@ impl View {
 
     /// The picture.
     pub fn draw(&self, layout: &Layout) -> Image<'static> {
-        let mut fine = Fine { width: FINE * self.width, height: FINE * self.height, grey: Vec::new() };
-        fine.grey = vec![0.5; fine.width * fine.height];
+        let mut fine = Fine::new(self.width, self.height, 0.5);
         let [[u0, v0], [u1, v1]] = layout.printed;
         let rim = 0.06 * (u1 - u0).hypot(v1 - v0);
         let sheet = [[u0 - rim, v0 - rim], [u1 + rim, v0 - rim], [u1 + rim, v1 + rim], [u0 - rim, v1 + rim]];
@@ -70,7 +69,7 @@ impl View {
             let outline: Vec<PixelPoint> = vertices.map(|at| self.at(layout, at)).collect();
             fine.fill(&outline, if shape.dark { self.ink } else { self.paper } as f32);
         }
-        let image = blurred(&Image::new(fine.width, fine.height, fine.grey).reduced(FINE), self.blur);
+        let image = blurred(&fine.picture(), self.blur);
         noisy(&image, self.noise, 1)
     }
 
@@ -102,15 +101,27 @@ fn rotated([x, y]: [f64; 2], degrees: f64) -> [f64; 2] {
     [cosine * x - sine * y, sine * x + cosine * y]
 }
 
-struct Fine {
+/// A picture with FINE x FINE samples a pixel.
+pub struct Fine {
     width: usize,
     height: usize,
     grey: Vec<f32>,
 }
 
 impl Fine {
+    /// `width` x `height` pixels of one grey value.
+    pub fn new(width: usize, height: usize, grey: f32) -> Self {
+        let (width, height) = (FINE * width, FINE * height);
+        Self { width, height, grey: vec![grey; width * height] }
+    }
+
+    /// The means of the samples of each pixel.
+    pub fn picture(self) -> Image<'static> {
+        Image::new(self.width, self.height, self.grey).reduced(FINE)
+    }
+
     /// Fills a polygon, by the crossings of each line.
-    fn fill(&mut self, outline: &[PixelPoint], grey: f32) {
+    pub fn fill(&mut self, outline: &[PixelPoint], grey: f32) {
         let scale = FINE as f64;
         // The centre of pixel 0 lies between its samples.
         let fine = |at: f64| scale * at + 0.5 * (scale - 1.0);
@@ -136,7 +147,8 @@ impl Fine {
     }
 }
 
-fn blurred(image: &Image, sigma: f64) -> Image<'static> {
+/// By a normal distribution.
+pub fn blurred(image: &Image, sigma: f64) -> Image<'static> {
     let reach = (3.5 * sigma).ceil() as i64;
     let weights: Vec<f32> = (-reach..=reach).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp() as f32).collect();
     let sum: f32 = weights.iter().sum();
