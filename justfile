@@ -165,6 +165,10 @@ perf-boards: python
     RAYON_NUM_THREADS=1 target/python/bin/python harness/python/benches/boards.py
     RAYON_NUM_THREADS=1 target/python/bin/python harness/python/benches/chessboards.py
 
+# Chessboards in wide lenses with their truth, SCENES in each of four fields, and frames that have none: tables, and what was not found (2000 in some 20 minutes)
+perf-wide SCENES="500":
+    SCENES={{SCENES}} cargo test --locked --release -p calibench-detect --test detect -- --ignored --nocapture --test-threads 1 many_
+
 # Seconds of whole commands beside Python with OpenCV that does the same, and how they grow
 perf-commands: python
     target/python/bin/python harness/python/benches/commands.py

@@ -27,6 +27,8 @@ pub(super) struct Board {
     pub corners: Vec<Point>,
     /// Whether it is seen there, or where the others have it.
     pub seen: Vec<bool>,
+    /// Whether nearly all corners are seen, about where the others have them; known of what was settled.
+    pub settled: bool,
     /// Whether the square before the first corner on both axes is dark; known of what [`Board::stands`].
     pub starts_dark: bool,
 }
@@ -39,7 +41,7 @@ impl Board {
         let places = (low[1]..=high[1]).flat_map(|v| (low[0]..=high[0]).map(move |u| [u, v]));
         let corners: Option<Vec<Point>> = places.map(|place| grid.get(&place).map(|saddle| scaled(saddle.at, level.factor))).collect();
         let corners = corners?;
-        Some(Self { columns: size(0), rows: size(1), seen: vec![true; corners.len()], corners, starts_dark: false })
+        Some(Self { columns: size(0), rows: size(1), seen: vec![true; corners.len()], corners, settled: false, starts_dark: false })
     }
 
     /// The area between its outermost corners, px^2.
@@ -153,9 +155,9 @@ impl Board {
 
     /// Whether these are the corners of a board, all of them.
     pub(super) fn stands(&mut self, image: &Image) -> bool {
-        let Some(contrasts) = self.contrasts(image).filter(|_| self.is_resolved()) else { return false };
+        let Some(contrasts) = self.contrasts(image).filter(|_| self.settled && self.is_resolved()) else { return false };
         self.starts_dark = contrasts.iter().sum::<f64>() < 0.0;
-        self.is_settled() && !self.is_larger(image)
+        !self.is_larger(image)
     }
 
     /// Turned by a quarter: the last of each row comes first.
@@ -165,7 +167,14 @@ impl Board {
         let corners = places().map(|place| self.corners[place]).collect();
         let seen = places().map(|place| self.seen[place]).collect();
         // Along a row dark and light squares alternate.
-        Self { columns: self.rows, rows: self.columns, corners, seen, starts_dark: self.starts_dark == self.columns.is_multiple_of(2) }
+        Self {
+            columns: self.rows,
+            rows: self.columns,
+            corners,
+            seen,
+            settled: self.settled,
+            starts_dark: self.starts_dark == self.columns.is_multiple_of(2),
+        }
     }
 
     /// With the counts that are asked for, from the start that the rule of order has; `None` if it has other counts.

@@ -21,9 +21,9 @@ const OFF: f64 = 0.025;
 const OFF_PX: f64 = 0.75;
 /// Sides are looked at in an image in which the shorter step is so long, px.
 const LOOKED_AT: f64 = 20.0;
-/// How far any corner may.
+/// How far one whose sides are seen may.
 const ASTRAY: f64 = 0.3;
-/// So large a share of the corners may be unseen, or one.
+/// So large a share of the corners may be unseen.
 const UNSEEN: f64 = 0.06;
 
 impl Board {
@@ -42,9 +42,11 @@ impl Board {
             .collect();
         let sides: Vec<Crossing> = (0..self.corners.len()).map(|index| self.sides(pyramid, index, self.corners[index])).collect();
         let mut doubtful = Vec::new();
+        let mut sided = vec![false; self.corners.len()];
         for (index, sides) in sides.into_iter().enumerate() {
             match sides {
-                Crossing::At(at) | Crossing::Peak(at) if met[index] && self.is_same(index, at) => {}
+                Crossing::At(at) if met[index] && self.is_same(index, at) => sided[index] = true,
+                Crossing::Peak(at) if met[index] && self.is_same(index, at) => {}
                 _ => doubtful.push((index, sides, self.corners[index])),
             }
         }
@@ -58,6 +60,7 @@ impl Board {
         for (index, sides, at) in doubtful {
             self.examine(pyramid, index, sides, met[index].then_some(at));
         }
+        self.settled = self.is_settled(&sided);
     }
 
     /// Looks for a corner at which the edges that meet in it, if they do, and its sides do not agree: the other corners decide.
@@ -116,15 +119,15 @@ impl Board {
         Forecast::of(|by| self.seen_beside(index, by))
     }
 
-    /// Whether nearly all corners are seen, about where the others have them.
-    pub(super) fn is_settled(&self) -> bool {
+    /// Whether nearly all corners are seen, about where the others have them: nearer where no sides tell.
+    fn is_settled(&self, sided: &[bool]) -> bool {
         let unseen = self.seen.iter().filter(|seen| !**seen).count();
-        let most = (UNSEEN * self.seen.len() as f64).max(1.0);
         let astray = |index: usize| {
-            let (at, limit) = (self.corners[index], ASTRAY * self.step(index) + BENT_PX);
+            let share = if sided[index] { ASTRAY } else { BENT };
+            let (at, limit) = (self.corners[index], share * self.step(index) + BENT_PX);
             let is_near = Forecast::off_bent(at, |by| self.seen_beside(index, by)).is_some_and(|off| off <= limit);
             !is_near && self.forecast(index).is_none_or(|all| all.off(at) > limit)
         };
-        unseen as f64 <= most && !(0..self.corners.len()).any(astray)
+        unseen as f64 <= UNSEEN * self.seen.len() as f64 && !(0..self.corners.len()).any(astray)
     }
 }

@@ -2,10 +2,11 @@
 
 mod lens;
 mod scene;
+mod textures;
 
-use calibench_detect::detect;
-use calibench_model::PixelPoint;
+use calibench_detect::{Doubt, detect};
 use calibench_model::boards::{Board, Chessboard};
+use calibench_model::{Image, PixelPoint};
 
 use scene::Scene;
 
@@ -45,10 +46,10 @@ fn orders(columns: usize, rows: usize) -> Vec<Vec<usize>> {
     all
 }
 
-fn came(scene: &Scene) -> Came {
+fn came(scene: &Scene, image: &Image) -> Came {
     let (columns, rows) = (scene.columns, scene.rows);
     let truth = scene.corners();
-    let Ok(found) = detect(&scene.picture(), &Board::Chessboard(Chessboard { columns, rows, square: 1.0 })) else { return Came::Missed };
+    let Ok(found) = detect(image, &Board::Chessboard(Chessboard { columns, rows, square: 1.0 })) else { return Came::Missed };
     let far = |at: PixelPoint| at.x.hypot(at.y);
     let upper_left = |a: &Vec<usize>, b: &Vec<usize>| far(truth[a[0]]).total_cmp(&far(truth[b[0]]));
     let Some(order) = orders(columns, rows).into_iter().min_by(upper_left) else { return Came::Missed };
@@ -56,7 +57,10 @@ fn came(scene: &Scene) -> Came {
     match truth.len() - found.points.len() {
         _ if off > WITHIN => Came::Wrong(off),
         0 => Came::Whole(off),
-        missing => Came::Part(missing),
+        missing => {
+            assert_eq!(found.doubts, [Doubt::Unseen { corners: missing }]);
+            Came::Part(missing)
+        }
     }
 }
 
@@ -65,7 +69,7 @@ fn counted(seeds: std::ops::Range<u64>, field: [f64; 2], mut told: impl FnMut(u6
     let mut counts = [0; 4];
     for seed in seeds {
         let scene = Scene::of(seed, field);
-        let came = came(&scene);
+        let came = came(&scene, &scene.picture());
         counts[match came {
             Came::Whole(_) => 0,
             Came::Part(_) => 1,
@@ -80,18 +84,46 @@ fn counted(seeds: std::ops::Range<u64>, field: [f64; 2], mut told: impl FnMut(u6
 #[test]
 fn boards_in_wide_lenses_are_found() {
     for field in [[90.0, 130.0], [130.0, 175.0], [175.0, 220.0]] {
-        let [whole, _, _, wrong] = counted(0..20, field, |_, _, _| {});
-        assert_eq!((wrong, whole >= 17), (0, true), "{field:?}: {whole} whole");
+        let [whole, part, missed, wrong] = counted(0..12, field, |_, _, _| {});
+        assert_eq!([part, missed, wrong], [0; 3], "{field:?}: {whole} whole");
     }
+}
+
+/// A sticker on a corner, a fifth of a square in radius: the sides beside it tell where the corner is; where they do not it is left out. It is never guessed.
+#[test]
+fn a_covered_corner_is_measured_by_its_sides_or_left_out() {
+    let (mut measured, mut left_out) = (0, 0);
+    for seed in 0..24 {
+        let scene = Scene::of(seed, [130.0, 200.0]);
+        let (corners, index) = (scene.corners(), seed as usize % scene.columns);
+        let beside = |by: usize| corners[index].distance(corners[index + by]);
+        let step = beside(scene.columns).min(beside(if index + 1 < scene.columns { 1 } else { 2 }));
+        let picture = scene.picture();
+        if step < 30.0 || !matches!(came(&scene, &picture), Came::Whole(_)) {
+            continue;
+        }
+        let at = PixelPoint::new(corners[index].x + 0.05 * step, corners[index].y - 0.04 * step);
+        let covers = |x: usize, y: usize| PixelPoint::new(x as f64, y as f64).distance(at) < 0.2 * step;
+        let covered = Image::from_fn(picture.width(), picture.height(), |x, y| if covers(x, y) { 0.5 } else { picture.at(x, y) });
+        match came(&scene, &covered) {
+            Came::Whole(_) => measured += 1,
+            Came::Part(1) | Came::Missed => left_out += 1,
+            other => panic!("seed {seed}: {other:?}"),
+        }
+    }
+    assert!(measured > 4 && measured > 2 * left_out, "{measured} measured, {left_out} left out");
+}
+
+fn write(picture: &Image, name: &str) {
+    let grey = picture.grey().iter().map(|grey| (255.0 * grey).round().clamp(0.0, 255.0) as u8).collect();
+    let image = image::GrayImage::from_raw(picture.width() as u32, picture.height() as u32, grey).unwrap();
+    image.save(format!("{name}.png")).unwrap();
 }
 
 /// A scene as a picture, and its corners in a file beside it, for others to try.
 fn save(folder: &str, field: [f64; 2], seed: u64, scene: &Scene) {
-    let picture = scene.picture();
-    let grey = picture.grey().iter().map(|grey| (255.0 * grey).round().clamp(0.0, 255.0) as u8).collect();
     let name = format!("{folder}/{}-{seed}-{}x{}", field[0], scene.columns, scene.rows);
-    let image = image::GrayImage::from_raw(picture.width() as u32, picture.height() as u32, grey).unwrap();
-    image.save(format!("{name}.png")).unwrap();
+    write(&scene.picture(), &name);
     let corners: String = scene.corners().iter().map(|at| format!("{:.3},{:.3}\n", at.x, at.y)).collect();
     std::fs::write(format!("{name}.csv"), corners).unwrap();
 }

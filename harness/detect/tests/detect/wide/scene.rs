@@ -173,8 +173,20 @@ impl Scene {
         along.map(|at| self.at(at)).collect()
     }
 
-    /// The picture: the board on its sheet before a cluttered ground, black beyond the circle of the field.
+    /// The picture: the board on its sheet.
     pub fn picture(&self) -> Image<'static> {
+        let mut random = Random::new(self.seed ^ 0x17);
+        let (paper, ink) = (random.between(0.65, 0.95) as f32, random.between(0.03, 0.2) as f32);
+        let [[u0, v0], [u1, v1]] = self.layout.printed;
+        let sheet = |rim: f64| vec![[u0 - rim, v0 - rim], [u1 + rim, v0 - rim], [u1 + rim, v1 + rim], [u0 - rim, v1 + rim]];
+        // The widest sheet that is in the field.
+        let rim = [0.8, 0.5, 0.25].into_iter().find(|rim| self.outline(&sheet(*rim)).is_some()).unwrap_or(0.0);
+        let dark = self.layout.shapes.iter().map(|shape| (shape.outline.0.iter().map(|curve| curve.at(0.0)).collect(), ink));
+        self.drawn_before_clutter(std::iter::once((sheet(rim), paper)).chain(dark))
+    }
+
+    /// Polygons of the board's plane, one upon the other, before a cluttered ground, black beyond the circle of the field.
+    pub fn drawn_before_clutter(&self, polygons: impl Iterator<Item = (Vec<PlatePoint>, f32)>) -> Image<'static> {
         let mut random = Random::new(self.seed ^ 0xb0a2);
         let Camera { width, height, radius, .. } = self.camera;
         let mut fine = Fine::new(width, height, 0.0);
@@ -195,18 +207,9 @@ impl Scene {
                 fine.fill(&corners, random.between(0.05, 0.9) as f32);
             }
         }
-        let (paper, ink) = (random.between(0.65, 0.95) as f32, random.between(0.03, 0.2) as f32);
-        let [[u0, v0], [u1, v1]] = self.layout.printed;
-        let rims = [0.8, 0.5, 0.25, 0.0].into_iter();
-        let mut sheets =
-            rims.filter_map(|rim| self.outline(&[[u0 - rim, v0 - rim], [u1 + rim, v0 - rim], [u1 + rim, v1 + rim], [u0 - rim, v1 + rim]]));
-        if let Some(sheet) = sheets.next() {
-            fine.fill(&sheet, paper);
-        }
-        for shape in &self.layout.shapes {
-            let corners: Vec<PlatePoint> = shape.outline.0.iter().map(|curve| curve.at(0.0)).collect();
+        for (corners, grey) in polygons {
             if let Some(outline) = self.outline(&corners) {
-                fine.fill(&outline, ink);
+                fine.fill(&outline, grey);
             }
         }
         let image = blurred(&fine.picture(), self.blur);
