@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use calibench_model::escape;
 use serde::Serialize;
 
 use super::ALPHA;
@@ -72,7 +71,7 @@ fn summary(findings: &[Finding], rules: Rules) -> String {
         return format!("The gate holds: nothing fails, {rest}.\n");
     }
     let mut methods: Vec<String> =
-        failing.iter().map(|finding| format!("{} in {}", escape::name(&finding.method), escape::name(&finding.scenario))).collect();
+        failing.iter().map(|finding| format!("{} in {}", escaped(&finding.method), escaped(&finding.scenario))).collect();
     methods.sort();
     methods.dedup();
     let (count, methods) = (failing.len(), methods.join(", "));
@@ -81,7 +80,7 @@ fn summary(findings: &[Finding], rules: Rules) -> String {
 
 /// Says which scenarios were `left` to another check; nothing where none were.
 pub fn not_tested(left: &[String]) -> String {
-    let names = left.iter().map(|name| escape::name(name)).collect::<Vec<_>>().join(", ");
+    let names = left.iter().map(|name| escaped(name)).collect::<Vec<_>>().join(", ");
     match left.len() {
         0 => String::new(),
         1 => format!("Not tested: {names}, which is left to `calibench check --nightly`.\n"),
@@ -107,6 +106,12 @@ fn entry(finding: &Finding, rules: Rules) -> serde_json::Value {
     value
 }
 
+/// A name as a terminal may show it: control characters are written out.
+pub(super) fn escaped(name: &str) -> String {
+    let hidden = |c: char| c.is_control() || ('\u{202a}'..='\u{202e}').contains(&c) || ('\u{2066}'..='\u{2069}').contains(&c);
+    name.chars().map(|c| if hidden(c) { c.escape_default().to_string() } else { c.to_string() }).collect()
+}
+
 fn table(findings: &[&Finding]) -> String {
     let mut rows = vec![(HEADINGS.map(str::to_owned), String::new())];
     let mut seen: BTreeMap<_, usize> = BTreeMap::new();
@@ -114,30 +119,25 @@ fn table(findings: &[&Finding]) -> String {
         let count = seen.entry((&finding.scenario, &finding.method, finding.metric)).or_default();
         *count += 1;
         if *count <= LISTED {
-            rows.push((cells(finding), escape::name(&finding.message).into_owned()));
+            rows.push((cells(finding), escaped(&finding.message)));
         }
     }
     let mut text = aligned(&rows);
     for ((scenario, method, metric), count) in seen.iter().filter(|(_, count)| **count > LISTED) {
-        let _ = writeln!(
-            text,
-            "  and {} more of {metric} of {} in {} (all with --json)",
-            count - LISTED,
-            escape::name(method),
-            escape::name(scenario)
-        );
+        let _ =
+            writeln!(text, "  and {} more of {metric} of {} in {} (all with --json)", count - LISTED, escaped(method), escaped(scenario));
     }
     text
 }
 
 fn cells(finding: &Finding) -> [String; 8] {
     let number = |value: Option<f64>| value.map_or_else(String::new, figure);
-    let [scenario, method, target] =
-        [&finding.scenario, &finding.method, finding.target.as_deref().unwrap_or_default()].map(|name| escape::name(name).into_owned());
+    let target = finding.target.as_deref().map(escaped).unwrap_or_default();
     let change =
         finding.change().map_or_else(String::new, |change| if change > 0.0 { format!("+{}", figure(change)) } else { figure(change) });
     let p = finding.p.map_or_else(String::new, |p| if p == 0.0 { "0".to_owned() } else { format!("{p:.1e}") });
-    [scenario, method, target, finding.metric.to_owned(), number(finding.baseline), number(finding.now), change, p]
+    let (scenario, method, metric) = (escaped(&finding.scenario), escaped(&finding.method), finding.metric.to_owned());
+    [scenario, method, target, metric, number(finding.baseline), number(finding.now), change, p]
 }
 
 /// Counts as they are, the rest to a millionth of a pixel, or shorter than that when tiny.
