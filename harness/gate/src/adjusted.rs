@@ -71,8 +71,11 @@ struct Counts {
     wrong: Option<f64>,
 }
 
+/// Which of the counts a figure belongs to.
+type Which = fn(&mut Counts) -> &mut Option<f64>;
+
 /// Whose count a figure is, and which; finders of boards go by the name of `board`.
-fn counted(name: &FigureName) -> Option<(&str, fn(&mut Counts) -> &mut Option<f64>)> {
+fn counted(name: &FigureName) -> Option<(&str, Which)> {
     let classifier = || name.parts().first().copied().unwrap_or_default();
     Some(match name.quantity() {
         Quantity::SeenTargets => (classifier(), |counts| &mut counts.targets),
