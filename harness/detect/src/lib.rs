@@ -37,7 +37,7 @@ pub use error::NotFound;
 pub use found::{Doubt, Found, FoundPoint};
 
 /// The version of what finds boards, in records.
-pub const VERSION: &str = "1";
+pub const VERSION: &str = "2";
 
 /// The least side of an image, px.
 const LEAST_SIDE: usize = 16;
