@@ -127,6 +127,10 @@ fn doubts_are_told_and_end_with_their_exit_code() {
     let headline = stdout(&words).lines().next().unwrap().to_owned();
     let doubts: Vec<&str> = list(&found["doubts"]).iter().map(|doubt| doubt.as_str().unwrap()).collect();
     assert_eq!(headline, format!("doubtful: {}", doubts.join("; ")));
+    let doubted = list(&found["doubted"]);
+    assert_eq!(doubted.iter().map(|doubt| doubt["words"].as_str().unwrap()).collect::<Vec<_>>(), doubts);
+    let (subject, chance) = (doubted[0]["subject"].as_str().unwrap(), doubted[0]["p"].as_f64().unwrap());
+    assert!(subject == "gross-errors" && chance < 1e-4 && doubted[0]["camera"].is_null(), "{found}");
     // What is refused says so in words, and answers nothing.
     let refused = run(folder.path(), &["calibrate", "--json", "--points", "none.csv", "--control", "control.csv", "--size", "1600x1200"]);
     assert_eq!((refused.status.code(), stdout(&refused).as_str()), (Some(2), ""));

@@ -169,7 +169,10 @@ def test_what_the_input_may_be_is_named(shots, measured, control, program, tmp_p
     words = ["--points", "points.csv", "--control", "control.csv", "--size", f"{size[0]}x{size[1]}", "--model", "opencv5", "--json"]
     answer = json.loads(program("calibrate", *words, code=3))
     assert found.suspected == answer["suspected"] and found.suspected[0]["kind"] == "raster"
-    assert pickle.loads(pickle.dumps(found)).suspected == found.suspected
+    assert [doubt["subject"] for doubt in found.doubted] == [doubt["subject"] for doubt in answer["doubted"]] and found.doubted
+    assert [doubt["p"] for doubt in found.doubted] == [doubt["p"] for doubt in answer["doubted"]]
+    copied = pickle.loads(pickle.dumps(found))
+    assert (copied.suspected, copied.doubted, copied.warnings) == (found.suspected, found.doubted, found.warnings)
     with pytest.warns(cb.DoubtWarning, match="suspected: columns and rows of the board are exchanged"):
         cb.calibrate(measured, turned, size=size, model="opencv5")
 
