@@ -26,17 +26,7 @@ pub(super) struct Forecast {
 impl Forecast {
     /// `beside` tells where the corner so many columns and rows farther is; `None` where too few are there.
     pub(super) fn of(beside: impl Fn(Place) -> Option<Point>) -> Option<Self> {
-        let bent = bent(&beside)?;
-        let others = |[x, y]: Place| {
-            let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| [x, y])).filter(|by| *by != [0, 0]);
-            around.map(|by| Some((by.map(f64::from), beside(by)?))).collect::<Option<Vec<(Point, Point)>>>()
-        };
-        let nine = MIDDLES.into_iter().find_map(|middle| Some((middle, others(middle)?)));
-        let plane = nine.and_then(|(middle, pairs)| {
-            let outside = middle.iter().filter(|by| **by != 0).count();
-            Some((Homography::fitted(&pairs)?.at([0.0, 0.0]), EXTRAPOLATION[outside]))
-        });
-        Some(Self { plane, bent })
+        Some(Self { bent: bent(&beside)?, plane: by_plane(beside) })
     }
 
     /// How far a point is off by the polynomial alone, relative to what the corners around know, px: sooner told than by both.
@@ -54,6 +44,17 @@ impl Forecast {
     pub(super) fn places(&self) -> impl Iterator<Item = Point> {
         [Some(self.bent), self.plane].into_iter().flatten().map(|(at, _)| at)
     }
+}
+
+/// By the homography of the eight others of nine, and by how much an error there exceeds one of the others; `None` where no such eight are there.
+pub(super) fn by_plane(beside: impl Fn(Place) -> Option<Point>) -> Option<(Point, f64)> {
+    let others = |[x, y]: Place| {
+        let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| [x, y])).filter(|by| *by != [0, 0]);
+        around.map(|by| Some((by.map(f64::from), beside(by)?))).collect::<Option<Vec<(Point, Point)>>>()
+    };
+    let (middle, pairs) = MIDDLES.into_iter().find_map(|middle| Some((middle, others(middle)?)))?;
+    let outside = middle.iter().filter(|by| **by != 0).count();
+    Some((Homography::fitted(&pairs)?.at([0.0, 0.0]), EXTRAPOLATION[outside]))
 }
 
 /// By a polynomial of second degree, and by how much an error there exceeds one of the others; nearer corners weigh more.

@@ -16,13 +16,13 @@ const SAME_SHARE: f64 = 0.03;
 /// How far a corner whose sides are not seen may be from where the others have it, as a share of the shorter step, and px more.
 const BENT: f64 = 0.08;
 const BENT_PX: f64 = 0.75;
+/// The same of one whose sides are seen.
+const ASTRAY: f64 = 0.3;
 /// So far off a corner is where its edges meet whatever its sides tell.
 const OFF: f64 = 0.025;
 const OFF_PX: f64 = 0.75;
 /// Sides are looked at in an image in which the shorter step is so long, px.
 const LOOKED_AT: f64 = 20.0;
-/// How far one whose sides are seen may.
-const ASTRAY: f64 = 0.3;
 /// So large a share of the corners may be unseen.
 const UNSEEN: f64 = 0.06;
 

@@ -2,33 +2,23 @@
 
 use std::collections::BTreeMap;
 
+use super::forecast::by_plane;
 use super::grow::Place;
 use super::sectors::Steps;
-use crate::plane::{Homography, Point, distance};
+use crate::plane::{Point, distance};
 
 /// Farther off than this it is put there.
 const OFF: f64 = 0.025;
 const OFF_PX: f64 = 0.75;
 /// So large a share of the corners may be put elsewhere.
 const MOVED: f64 = 0.06;
-/// By how much an error of a point exceeds one of the others: in the middle, on a side and in a corner of nine, of which eight determine an affine map and its twist.
-const EXTRAPOLATION: [f64; 3] = [1.06, 1.18, 1.81];
-
-/// The middles of nine that hold a corner, from it: it is their middle, on a side, in a corner.
-const MIDDLES: [Place; 9] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]];
 
 /// Corners by their place.
 type Corners = BTreeMap<Place, Point>;
 
 /// Where the eight others of 3 x 3 around a corner have it, and how much worse they know than in their middle; `None` where no such eight are there.
 fn foreseen(corners: &Corners, [u, v]: Place) -> Option<(Point, f64)> {
-    let others = |[x, y]: Place| {
-        let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| [x, y])).filter(|by| *by != [0, 0]);
-        around.map(|by| Some((by.map(f64::from), *corners.get(&[u + by[0], v + by[1]])?))).collect::<Option<Vec<(Point, Point)>>>()
-    };
-    let (middle, pairs) = MIDDLES.into_iter().find_map(|middle| Some((middle, others(middle)?)))?;
-    let outside = middle.iter().filter(|by| **by != 0).count();
-    Some((Homography::fitted(&pairs)?.at([0.0, 0.0]), EXTRAPOLATION[outside]))
+    by_plane(|by| corners.get(&[u + by[0], v + by[1]]).copied())
 }
 
 /// How far a corner is off, relative to what its neighbours know, px.

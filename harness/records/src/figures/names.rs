@@ -1,18 +1,13 @@
 //! Names of figures that come again and again.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::{FigureName, Group, UnknownFigure};
+use crate::interned::Interned;
 
-/// Names of figures, each of which is looked up in the catalogue once. They come in the same order again and again: the one that is next is tried first,
-/// after the one that was last.
+/// Names of figures, each of which is looked up in the catalogue once.
 #[derive(Debug, Default)]
-pub struct FigureNames {
-    order: Vec<FigureName>,
-    places: HashMap<(Group, Arc<str>), usize>,
-    last: usize,
-}
+pub struct FigureNames(Interned<(Group, Arc<str>), FigureName>);
 
 impl FigureNames {
     /// Its place in the order in which names came, and the name.
@@ -20,22 +15,8 @@ impl FigureNames {
     /// # Errors
     /// A name that the catalogue does not have in this group.
     pub fn get(&mut self, group: Group, text: &str) -> Result<(usize, FigureName), UnknownFigure> {
-        for guess in [self.last, self.last + 1] {
-            if self.order.get(guess).is_some_and(|known| known.text() == text && known.group() == group) {
-                self.last = guess;
-                return Ok((guess, self.order[guess].clone()));
-            }
-        }
-        let key: (Group, Arc<str>) = (group, text.into());
-        if let Some(place) = self.places.get(&key) {
-            self.last = *place;
-            return Ok((*place, self.order[*place].clone()));
-        }
-        let new = FigureName::parse(group, text)?;
-        self.last = self.order.len();
-        self.order.push(new.clone());
-        self.places.insert(key, self.last);
-        Ok((self.last, new))
+        let is = |known: &FigureName| known.text() == text && known.group() == group;
+        self.0.get(is, || (group, text.into()), |(group, text)| FigureName::parse(*group, text))
     }
 }
 
