@@ -23,8 +23,8 @@ pub struct Diff {
     first: PathBuf,
     /// Another one, for images of the same size
     second: PathBuf,
-    /// Draw the difference over the frame
-    #[arg(long, value_name = "PNG")]
+    /// Draw the difference over the frame, as PNG, SVG or PDF by the ending
+    #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
     /// Compare without the best rotation
     #[arg(long)]

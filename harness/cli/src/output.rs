@@ -6,6 +6,7 @@ use std::path::Path;
 use calibench_cameras::FORMATS;
 use calibench_files::{Inputs, OutputFile, OutputFolder};
 use calibench_images::st_map::MapFile;
+use calibench_report::PICTURES;
 
 use crate::failure::Failure;
 
@@ -27,9 +28,9 @@ pub fn table(option: &str, path: Option<&Path>, inputs: &Inputs) -> Result<Optio
     path.map(|path| file(option, path, ("a table", &["csv"]), inputs)).transpose()
 }
 
-/// A PNG file.
+/// A picture.
 pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
-    file(option, path, ("a picture", &["png"]), inputs)
+    file(option, path, ("a picture", &PICTURES), inputs)
 }
 
 /// A page.

@@ -40,8 +40,8 @@ pub struct Plot {
     /// Only this method; may be repeated
     #[arg(short, long = "method", value_name = "METHOD")]
     methods: Vec<String>,
-    /// The picture; its numbers stand beside it as CSV [default: the scenario's name with .png, in the current folder]
-    #[arg(short, long, value_name = "PNG")]
+    /// The picture, as PNG, SVG or PDF by its ending; its numbers stand beside it as CSV [default: the scenario's name with .png, in the current folder]
+    #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
 }
 

@@ -27,8 +27,8 @@ use crate::failure::Failure;
 pub struct Show {
     /// Name of a scenario, or a TOML file
     scenario: String,
-    /// The preview [default: the scenario's name with .png, in the current folder]
-    #[arg(short, long, value_name = "PNG")]
+    /// The preview, as PNG, SVG or PDF by its ending [default: the scenario's name with .png, in the current folder]
+    #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
 }
 

@@ -65,8 +65,8 @@ pub struct Convert {
     /// Convert by `k_i = K_i / c^(2i)`, `p = P / c`, as the Canon paper's Table 2 does: wrong beyond first order, and said to be
     #[arg(long, conflicts_with_all = ["radius", "rotation", "accept"])]
     naive: bool,
-    /// Draw the residuals over the frame
-    #[arg(long, value_name = "PNG")]
+    /// Draw the residuals over the frame, as PNG, SVG or PDF by the ending
+    #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,

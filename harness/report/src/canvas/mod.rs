@@ -2,13 +2,13 @@
 
 mod raster;
 mod recorder;
+mod runs;
 mod series;
 
 use std::io::{self, Write};
 use std::sync::Once;
 
-use calibench_files::photograph::marked;
-use calibench_files::{NewFolder, OutputFile};
+use calibench_files::NewFolder;
 use calibench_model::Image;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -17,7 +17,8 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayon::prelude::*;
 
-pub(crate) use recorder::{Area, Recorder, Stroke, Written};
+pub(crate) use recorder::{Area, EM, Pen, Recorder, Stroke, Written};
+pub(crate) use runs::{Run, STEP, ring, row, runs};
 use series::Series;
 pub(crate) use series::{Depth, OwnMark, Owner};
 
@@ -206,16 +207,6 @@ impl Canvas {
         let pixels = raster::pixels(&self.strokes, (self.width, self.height));
         let encoder = PngEncoder::new_with_quality(output, CompressionType::Default, FilterType::Adaptive);
         encoder.write_image(&pixels, self.width, self.height, ExtendedColorType::Rgb8).map_err(io::Error::other)
-    }
-
-    /// Writes the picture as a PNG file of its own, marked as drawn by this program: it is replaced when it is drawn again, a photograph never is.
-    ///
-    /// # Errors
-    /// What the file system refuses.
-    pub fn write(&self, file: &OutputFile) -> io::Result<()> {
-        let mut png = Vec::new();
-        self.encode(&mut png)?;
-        file.write(|output| output.write_all(&marked(png)))
     }
 }
 

@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters_backend::text_anchor::Pos;
+use plotters_backend::text_anchor::{Pos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
 use super::series::Owner;
@@ -35,6 +35,12 @@ impl BackendStyle for Pen {
     }
 }
 
+/// The side of an em of the pictures' font, in heights of its text: Noto Sans reaches 1069 thousandths of an em up and 293 down.
+pub(crate) const EM: f64 = 1.0 / 1.362;
+/// How high capitals and digits are, and how far letters reach up, em.
+const CAPITALS: f64 = 0.714;
+const UP: f64 = 1.069;
+
 /// A text.
 #[derive(Clone)]
 pub(crate) struct Written {
@@ -46,6 +52,18 @@ pub(crate) struct Written {
     pub(crate) transform: FontTransform,
     /// On a white rim.
     pub(crate) has_rim: bool,
+}
+
+impl Written {
+    /// How far its baseline lies below its place, px; of a text that is turned, before it is turned.
+    pub(crate) fn baseline(&self) -> f64 {
+        let part = match self.anchor.v_pos {
+            VPos::Top => UP,
+            VPos::Center => 0.5 * CAPITALS,
+            VPos::Bottom => 0.0,
+        };
+        part * self.size * EM
+    }
 }
 
 /// Something that was drawn; places are px of the picture.

@@ -1,4 +1,4 @@
-//! Images within a page.
+//! Images within a drawing.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -17,33 +17,70 @@ const QUALITY: u8 = 70;
 const OUTSIDE: u8 = 245;
 
 /// An image as a part of a drawing.
-pub(super) struct Embedded {
+pub(crate) struct Embedded {
     /// Its upper left corner, px of the drawing.
-    pub(super) at: BackendCoord,
+    pub(crate) at: BackendCoord,
     /// Its width and height, px of the drawing.
-    pub(super) size: (u32, u32),
+    pub(crate) size: (u32, u32),
     /// The image itself.
-    pub(super) url: String,
+    pub(crate) raster: Raster,
+}
+
+/// An image as it is shown.
+pub(crate) struct Raster {
+    /// Its columns and rows.
+    pub(crate) size: (u32, u32),
+    /// Its grey values, or red, green, blue and opacity, 8 bits each, row by row.
+    pub(crate) samples: Vec<u8>,
+    /// What they are.
+    pub(crate) kind: Kind,
+}
+
+/// What the samples of an image are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Grey values that are kept as they are.
+    Grey,
+    /// Grey values of a photograph as a whole, which may lose what nobody sees.
+    Photograph,
+    /// Red, green, blue and opacity.
+    Rgba,
+}
+
+impl Raster {
+    /// As the address of an image within a page.
+    pub(super) fn url(&self) -> String {
+        let (width, height) = self.size;
+        let mut file = Vec::new();
+        // Writing to memory cannot fail; the size is that of the samples.
+        let media = if self.kind == Kind::Photograph {
+            let _ = JpegEncoder::new_with_quality(&mut file, QUALITY).write_image(&self.samples, width, height, ExtendedColorType::L8);
+            "jpeg"
+        } else {
+            let colours = if self.kind == Kind::Rgba { ExtendedColorType::Rgba8 } else { ExtendedColorType::L8 };
+            let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive);
+            let _ = encoder.write_image(&self.samples, width, height, colours);
+            "png"
+        };
+        format!("data:image/{media};base64,{}", STANDARD.encode(file))
+    }
 }
 
 /// A part of an image of `columns` pixels a row, each `zoom` px wide: as it is, or, of a photograph as a whole, a reduced copy.
-pub(super) fn part(at: (u32, u32), (columns, zoom): (u32, u32), levels: &[Option<u8>]) -> Embedded {
+pub(crate) fn part(at: (u32, u32), (columns, zoom): (u32, u32), levels: &[Option<u8>]) -> Embedded {
     let rows = levels.len() as u32 / columns.max(1);
     let pixels: Vec<u8> = levels.iter().map(|level| level.unwrap_or(OUTSIDE)).collect();
-    let url = if columns < WHOLE {
-        png(&pixels, (columns, rows), ExtendedColorType::L8)
+    let raster = if columns < WHOLE {
+        Raster { size: (columns, rows), samples: pixels, kind: Kind::Grey }
     } else {
-        let (pixels, size) = reduced(&pixels, (columns, rows), columns.div_ceil(COLUMNS));
-        let mut file = Vec::new();
-        // Writing to memory cannot fail; the size is that of the pixels.
-        let _ = JpegEncoder::new_with_quality(&mut file, QUALITY).write_image(&pixels, size.0, size.1, ExtendedColorType::L8);
-        format!("data:image/jpeg;base64,{}", STANDARD.encode(file))
+        let (samples, size) = reduced(&pixels, (columns, rows), columns.div_ceil(COLUMNS));
+        Raster { size, samples, kind: Kind::Photograph }
     };
-    Embedded { at: (at.0 as i32, at.1 as i32), size: (columns * zoom, rows * zoom), url }
+    Embedded { at: (at.0 as i32, at.1 as i32), size: (columns * zoom, rows * zoom), raster }
 }
 
 /// Single pixels, transparent between them: the first of some side by side, how many they are, and their colour.
-pub(super) fn dots(dots: impl Iterator<Item = (BackendCoord, i32, BackendColor)> + Clone) -> Embedded {
+pub(crate) fn dots(dots: impl Iterator<Item = (BackendCoord, i32, BackendColor)> + Clone) -> Embedded {
     let left = dots.clone().map(|((x, _), ..)| x).min().unwrap_or(0);
     let right = dots.clone().map(|((x, _), count, _)| x + count - 1).max().unwrap_or(0);
     let rows = dots.clone().map(|((_, y), ..)| y);
@@ -56,15 +93,7 @@ pub(super) fn dots(dots: impl Iterator<Item = (BackendCoord, i32, BackendColor)>
         pixels.as_chunks_mut().0[place..place + count as usize].fill(pixel);
     }
     let size = (width as u32, height as u32);
-    Embedded { at: (left, top), size, url: png(&pixels, size, ExtendedColorType::Rgba8) }
-}
-
-fn png(pixels: &[u8], (width, height): (u32, u32), colours: ExtendedColorType) -> String {
-    let mut file = Vec::new();
-    // Writing to memory cannot fail; the size is that of the pixels.
-    let _ =
-        PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive).write_image(pixels, width, height, colours);
-    format!("data:image/png;base64,{}", STANDARD.encode(file))
+    Embedded { at: (left, top), size, raster: Raster { size, samples: pixels, kind: Kind::Rgba } }
 }
 
 /// Means of squares of `by` pixels; what is left over at the right and below is of smaller ones.
@@ -86,7 +115,8 @@ fn reduced(pixels: &[u8], (columns, rows): (u32, u32), by: u32) -> (Vec<u8>, (u3
 mod tests {
     use super::*;
 
-    fn decoded(url: &str) -> image::DynamicImage {
+    fn decoded(raster: &Raster) -> image::DynamicImage {
+        let url = raster.url();
         let bytes = STANDARD.decode(url.split_once(',').map(|(_, data)| data).unwrap()).unwrap();
         image::load_from_memory(&bytes).unwrap()
     }
@@ -96,13 +126,13 @@ mod tests {
         let levels: Vec<Option<u8>> = (0..6).map(|k| (k != 4).then_some(40 * k)).collect();
         let window = part((7, 8), (3, 5), &levels);
         assert_eq!((window.at, window.size), ((7, 8), (15, 10)));
-        assert_eq!(decoded(&window.url).to_luma8().into_raw(), [0, 40, 80, 120, OUTSIDE, 200]);
+        assert_eq!(decoded(&window.raster).to_luma8().into_raw(), [0, 40, 80, 120, OUTSIDE, 200]);
 
         // Columns of 1300 px: halves are dark and bright, with stripes that the means take away.
         let level = |k: u32| Some(if k % 1300 < 600 { 40 } else { 160 } + if (k % 1300).is_multiple_of(3) { 30 } else { 0 });
         let whole = part((0, 0), (1300, 1), &(0..1300 * 31).map(level).collect::<Vec<_>>());
         assert_eq!(whole.size, (1300, 31));
-        let small = decoded(&whole.url).to_luma8();
+        let small = decoded(&whole.raster).to_luma8();
         assert_eq!(small.dimensions(), (434, 11));
         let near = |x: u32, level: u8| assert!(small.get_pixel(x, 5).0[0].abs_diff(level) <= 4, "{x}: {:?}", small.get_pixel(x, 5));
         near(20, 50);
@@ -114,7 +144,7 @@ mod tests {
         let red = BackendColor { alpha: 1.0, rgb: (255, 0, 0) };
         let found = dots([((10, 20), 1, red), ((11, 21), 2, red)].into_iter());
         assert_eq!((found.at, found.size), ((10, 20), (3, 2)));
-        let image = decoded(&found.url).to_rgba8();
+        let image = decoded(&found.raster).to_rgba8();
         let drawn: Vec<(u32, u32)> =
             image.enumerate_pixels().filter(|(.., pixel)| pixel.0 == [255, 0, 0, 255]).map(|(x, y, _)| (x, y)).collect();
         assert_eq!(drawn, [(0, 0), (1, 1), (2, 1)]);

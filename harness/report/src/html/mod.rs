@@ -11,7 +11,8 @@ mod scene;
 
 use std::fmt::Write;
 
-pub(crate) use drawing::Drawing;
+pub(crate) use drawing::{Drawing, svg};
+pub(crate) use embedded::{Embedded, Kind, dots, part};
 pub(crate) use from_markdown::{Converted, Figures, Groups, in_place};
 pub(crate) use marks::{Said, Shape};
 pub use markup::{escaped, json as in_script};

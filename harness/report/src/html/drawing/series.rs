@@ -5,8 +5,9 @@ use std::fmt::Write;
 
 use plotters_backend::BackendCoord;
 
-use super::super::markup::between_bars;
-use super::{Pencil, draw};
+use super::super::markup::{between_bars, escaped};
+use super::letters::Lettering;
+use super::pencil::Pencil;
 use crate::Canvas;
 use crate::canvas::{Depth, Owner, Stroke};
 
@@ -23,14 +24,15 @@ pub(super) fn attributes(canvas: &Canvas) -> String {
 ///
 /// A series is gathered from all panels of a picture: so it is hidden at once, and what is of one style is one path.
 pub(super) fn groups(strokes: &[Stroke]) -> String {
-    let (mut below, mut owned) = (Pencil::default(), BTreeMap::<(Depth, usize), Pencil>::new());
+    let pencil = || Pencil::new(Lettering::OfPage);
+    let (mut below, mut owned) = (pencil(), BTreeMap::<(Depth, usize), Pencil>::new());
     let mut said = BTreeMap::<Option<usize>, Vec<(BackendCoord, &[String])>>::new();
     let mut owner = None;
     for run in strokes.chunk_by(|a, b| !is_aside(a) && !is_aside(b)) {
         match run {
             [Stroke::Belongs(of)] => owner = *of,
             [Stroke::Said(at, values)] => said.entry(owner.map(|Owner { series, .. }| series)).or_default().push((*at, values)),
-            run => draw(owner.map_or(&mut below, |Owner { series, depth }| owned.entry((depth, series)).or_default()), run),
+            run => owner.map_or(&mut below, |Owner { series, depth }| owned.entry((depth, series)).or_insert_with(pencil)).strokes(run),
         }
     }
     let mut out = below.end();
@@ -41,6 +43,29 @@ pub(super) fn groups(strokes: &[Stroke]) -> String {
     for (series, said) in said {
         let series = series.map_or_else(String::new, |series| format!(" data-m=\"{series}\""));
         let _ = write!(out, "<g{series} data-p=\"{}\"/>", points(&said));
+    }
+    out
+}
+
+/// All strokes as they were drawn, those of a series in groups that are called as it is: programs that draw show its name.
+pub(super) fn named(canvas: &Canvas) -> String {
+    let mut out = String::new();
+    let mut owner = None;
+    for run in canvas.strokes().chunk_by(|a, b| !is_aside(a) && !is_aside(b)) {
+        match run {
+            [Stroke::Belongs(of)] => owner = *of,
+            [Stroke::Said(..)] => {}
+            run => {
+                let mut pencil = Pencil::new(Lettering::OfText);
+                pencil.strokes(run);
+                let drawn = pencil.end();
+                // Writing to a String cannot fail.
+                let _ = match owner.and_then(|Owner { series, .. }| canvas.series().get(series)) {
+                    Some(name) => write!(out, "<g><title>{}</title>{drawn}</g>", escaped(name)),
+                    None => write!(out, "{drawn}"),
+                };
+            }
+        }
     }
     out
 }
