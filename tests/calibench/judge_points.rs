@@ -54,7 +54,7 @@ fn agree(folder: &Path, photos: &[String]) -> String {
     let named: Vec<String> = METHODS.iter().enumerate().map(|(index, method)| format!("{method}={index}.csv")).collect();
     let output = judged(folder, &[&named[0], &named[1]], &[&MODELS[..], &["--report", "files"]].concat());
     assert_eq!((stdout(&output), output.status.code()), (stdout(&says), says.status.code()), "{}", stderr(&output));
-    let compared = ["judgement.csv", "holdout.png", "halves.png", "views.png", "principal-point.png"];
+    let compared = ["judgement.csv", "holdout.png", "halves.png", "halves-predicted.png", "views.png", "principal-point.png"];
     for name in compared {
         let [a, b] = ["photographs", "files"].map(|from| std::fs::read(folder.join(from).join(name)).unwrap());
         assert!(a == b, "{name} differs");

@@ -188,9 +188,14 @@ pub(crate) fn dashed(area: &Area<'_>, [from, to]: [(i32, i32); 2]) {
     }
 }
 
-/// An arrow.
+/// A black arrow.
 pub(crate) fn arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32)) {
-    let style = BLACK.stroke_width(1);
+    coloured_arrow(area, from, to, BLACK);
+}
+
+/// An arrow.
+pub(crate) fn coloured_arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32), colour: RGBColor) {
+    let style = colour.stroke_width(1);
     area.draw(&PathElement::new([from, to], style)).ok();
     let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
     let length = dx.hypot(dy);

@@ -5,8 +5,7 @@ use calibench_model::camera::ImageSize;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use crate::Canvas;
-use crate::field::{Area, BOTTOM, LEFT, MAP, RIGHT, TOP, write};
+use crate::field::{Area, write};
 
 /// A map of the frame: where it lies in the picture, and how large.
 #[derive(Clone, Copy)]
@@ -24,38 +23,11 @@ impl Map {
         Self { size, corner: (corner.0 as i32, corner.1 as i32), extent: (width, height) }
     }
 
-    /// The one map of a picture, with room for axes, a title, a legend and a scale; and the picture.
-    pub(crate) fn alone(size: ImageSize, title: &str) -> (Self, Canvas) {
-        let map = Self::new(size, (LEFT, TOP), MAP);
-        let mut canvas = Canvas::new(LEFT + map.extent.0 + RIGHT, TOP + map.extent.1 + BOTTOM);
-        canvas.text(title, 20, (LEFT, TOP / 2));
-        (map, canvas)
-    }
-
     /// A place of the frame in the picture.
     pub(crate) fn place(&self, at: PixelPoint) -> (i32, i32) {
         let corner = at.to_corner();
         let part = |value: f64, size: u32, px: u32| (value / f64::from(size) * f64::from(px)).round() as i32;
         (self.corner.0 + part(corner.x, self.size.width, self.extent.0), self.corner.1 + part(corner.y, self.size.height, self.extent.1))
-    }
-
-    /// Cell (column, row) of a grid over the frame, in the picture.
-    pub(crate) fn cell(&self, (column, row): (usize, usize), (columns, rows): (usize, usize)) -> [(i32, i32); 2] {
-        let edge = |i: usize, n: usize, px: u32| (i as f64 / n as f64 * f64::from(px)).round() as i32;
-        let at = |c: usize, r: usize| (self.corner.0 + edge(c, columns, self.extent.0), self.corner.1 + edge(r, rows, self.extent.1));
-        [at(column, row), at(column + 1, row + 1)]
-    }
-
-    /// A node (column, row) of a grid over the frame, in the picture; it stands in the middle of its cell.
-    pub(crate) fn node(&self, (column, row): (f64, f64), (columns, rows): (usize, usize)) -> (i32, i32) {
-        let middle = |i: f64, n: usize, px: u32| ((i + 0.5) / n as f64 * f64::from(px)).round() as i32;
-        (self.corner.0 + middle(column, columns, self.extent.0), self.corner.1 + middle(row, rows, self.extent.1))
-    }
-
-    /// How far a place of the picture is inside the frame, px of the picture.
-    pub(crate) fn inside_by(&self, (x, y): (i32, i32)) -> f64 {
-        let (x, y) = (x - self.corner.0, y - self.corner.1);
-        f64::from(x.min(y).min(self.extent.0 as i32 - x).min(self.extent.1 as i32 - y))
     }
 
     /// The frame's outline.

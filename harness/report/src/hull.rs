@@ -27,6 +27,11 @@ impl Hull {
     pub fn sides(&self) -> impl Iterator<Item = [PixelPoint; 2]> + '_ {
         (0..self.0.len()).map(|i| [self.0[i], self.0[(i + 1) % self.0.len()]])
     }
+
+    /// Its corners around, the first once more at the end; empty for an empty one.
+    pub fn outline(&self) -> Vec<(f64, f64)> {
+        self.0.iter().chain(self.0.first()).map(|corner| (corner.x, corner.y)).collect()
+    }
 }
 
 /// One half of the way around, without its end.

@@ -7,7 +7,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use rayon::prelude::*;
 
-use crate::html::{Converted, Drawing, Page, Section, escaped, explorer, in_place};
+use crate::html::{Converted, Drawing, Page, Section, explorer, in_place};
+use crate::markup::escaped;
 use crate::places::PAGE;
 use crate::{Composed, Places, ReportError, compose, composed};
 

@@ -157,3 +157,14 @@ fn two_outputs_are_two_files() {
         stderr(&output)
     );
 }
+
+#[test]
+fn a_picture_is_what_its_ending_says() {
+    let folder = workshop();
+    for (name, begins) in [("plot.svg", &b"<?xml"[..]), ("plot.pdf", b"%PDF-"), ("plot.PNG", b"\x89PNG")] {
+        let output = run(folder.path(), &["plot", "sweep.toml", "-o", name]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(fs::read(folder.path().join(name)).unwrap().starts_with(begins), "{name}");
+    }
+    refused(folder.path(), &["plot", "sweep.toml", "-o", "plot.eps"], &["a picture ends in .png, .svg, .pdf"]);
+}

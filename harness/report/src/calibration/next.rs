@@ -2,24 +2,17 @@
 
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write;
-use std::io;
 
 use calibench_calibrate::{Calibration, Next, Photograph};
-use calibench_files::NewFolder;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
-use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
 
-use super::pictures::named;
+use super::figures::named;
 use super::uncertainty::measured;
-use crate::canvas::COLOURS;
-use crate::field::{BOTTOM, LEFT, TOP, arrow, dashed, write};
-use crate::frame::Map;
-use crate::html::{Figures, Plot, Said, Shape};
 use crate::hull::Hull;
 use crate::markdown::MarkdownTable;
-use crate::{Canvas, plain};
+use crate::plain;
+use crate::plot::{Figure, Plot, Said, Shape};
 
 /// An arrow's length as a share of the frame's width.
 const ARROW: f64 = 0.06;
@@ -27,13 +20,12 @@ const ARROW: f64 = 0.06;
 /// The section of a page, for all cameras: text, pictures, and figures in their place.
 pub(super) struct NextSection {
     pub(super) text: String,
-    pictures: Vec<(String, Canvas)>,
-    pub(super) figures: Figures,
+    pub(super) figures: Vec<Figure>,
 }
 
 impl NextSection {
     pub(super) fn of(calibration: &Calibration<'_>) -> Self {
-        let mut section = Self { text: String::new(), pictures: Vec::new(), figures: Figures::new() };
+        let mut section = Self { text: String::new(), figures: Vec::new() };
         for camera in 0..calibration.cameras() {
             let _ = write!(section.text, "\n## What to photograph next{}\n\n", calibration.of(camera));
             match calibration.next(camera) {
@@ -49,7 +41,8 @@ impl NextSection {
     fn camera(&mut self, calibration: &Calibration<'_>, camera: usize, next: &Next) {
         let (prefix, whose) = named(calibration, camera);
         let (size, taken) = (calibration.camera(camera).size(), Hull::of(&measured(calibration, camera)));
-        let file = format!("{prefix}next.png");
+        let name = format!("{prefix}next");
+        let plot = plot(next, size, &taken, &name);
         let caption = format!(
             "{whose}Where these photographs would have the control in the frame: its outline, and an arrow to the side that is nearer. The outline without a \
              number surrounds what was measured so far."
@@ -63,20 +56,21 @@ impl NextSection {
         let _ = write!(
             self.text,
             "{first}Over the frame the camera pictures what is far away with a standard deviation of {} px (RMS, after the best rotation). One more photograph like those \
-             so far makes that {} px; of several thousand others these lower it most, each taken after those above it:\n\n{}\n{}\n\n![{caption}]({file})\n\n{caption}\n",
+             so far makes that {} px; of several thousand others these lower it most, each taken after those above it:\n\n{}\n{}\n\n![{caption}]({name}.png)\n\n{caption}\n",
             plain(next.before),
             plain(next.usual),
             table(next, size).render(),
             limits(next)
         );
-        self.figures.insert(file.clone(), figure(next, size, &taken, &format!("{prefix}next")).figure(&caption));
-        self.pictures.push((file, picture(next, size, &taken)));
+        self.figures.push(Figure { name, caption, remark: remark(next), plot });
     }
+}
 
-    /// Writes its pictures.
-    pub(super) fn write(&self, folder: &NewFolder) -> io::Result<()> {
-        self.pictures.iter().try_for_each(|(file, canvas)| folder.write(file, |output| canvas.encode(output)))
-    }
+/// How far each photograph after the other lowers the uncertainty, in a line.
+fn remark(next: &Next) -> String {
+    let then: Vec<String> =
+        next.photographs.iter().enumerate().map(|(index, one)| format!("with {}: {}", index + 1, plain(one.uncertainty))).collect();
+    format!("standard deviation over the frame, px: now {}; {}", plain(next.before), then.join(", "))
 }
 
 fn table(next: &Next, size: ImageSize) -> MarkdownTable {
@@ -128,47 +122,14 @@ fn end(one: &Photograph, size: ImageSize) -> Option<(f64, f64)> {
     one.nearer.map(|towards| (length * towards.cos(), -length * towards.sin()))
 }
 
-fn picture(next: &Next, size: ImageSize, taken: &Hull) -> Canvas {
-    let (map, mut canvas) = Map::alone(size, "What to photograph next");
-    canvas.paint(|area| {
-        taken.sides().for_each(|side| dashed(area, side.map(|end| map.place(end))));
-        for (index, one) in next.photographs.iter().enumerate() {
-            let colour = COLOURS[index % COLOURS.len()];
-            for side in Hull::of(&one.points).sides() {
-                area.draw(&PathElement::new(side.map(|end| map.place(end)), colour.stroke_width(3))).ok();
-            }
-            let at = map.place(one.middle);
-            if let Some((dx, dy)) = end(one, size) {
-                arrow(area, at, map.place(PixelPoint::new(one.middle.x + dx, one.middle.y + dy)));
-            }
-            area.draw(&Circle::new(at, 11, WHITE.filled())).ok();
-            area.draw(&Circle::new(at, 11, colour.stroke_width(2))).ok();
-            write(area, &(index + 1).to_string(), at, HPos::Center);
-        }
-        map.axes(area);
-    });
-    let then: Vec<String> =
-        next.photographs.iter().enumerate().map(|(index, one)| format!("with {}: {}", index + 1, plain(one.uncertainty))).collect();
-    let text = format!("standard deviation over the frame, px: now {}; {}", plain(next.before), then.join(", "));
-    canvas.text(&text, 16, (LEFT, TOP + map.extent.1 + BOTTOM - 20));
-    canvas
-}
-
-fn figure(next: &Next, size: ImageSize, taken: &Hull, id: &str) -> Plot {
+fn plot(next: &Next, size: ImageSize, taken: &Hull, id: &str) -> Plot {
     let mut plot = Plot::frame(id, "What to photograph next", size);
-    let around = |hull: &Hull| -> Vec<(f64, f64)> {
-        let ends: Vec<(f64, f64)> = hull.sides().map(|[a, _]| (a.x, a.y)).collect();
-        ends.iter().chain(ends.first()).copied().collect()
-    };
-    let so_far = around(taken);
-    if !so_far.is_empty() {
-        plot.series(7, None, &["measured so far"]);
-        plot.line(&so_far, &Said::default());
-    }
+    plot.series(7, None, &["measured so far"]);
+    plot.dashed(&taken.outline());
     for (index, one) in next.photographs.iter().enumerate() {
         plot.series(index + 1, None, &["photograph", "tilt, degrees", "distance", "standard deviation then, px"]);
         let said = Said::of([(index + 1).to_string(), format!("{:.0}", one.tilt.to_degrees()), plain(one.depth), plain(one.uncertainty)]);
-        plot.line(&around(&Hull::of(&one.points)), &Said::default());
+        plot.line(&Hull::of(&one.points).outline(), &Said::default());
         plot.symbol(Shape::ALL[index % Shape::ALL.len()], (one.middle.x, one.middle.y), &said);
         if let Some(end) = end(one, size) {
             plot.arrow(one.middle, end, &Said::default());

@@ -12,13 +12,15 @@ use calibench_model::escape;
 use super::digits::rounded;
 use super::html;
 use super::next::NextSection;
-use super::pictures::Picture;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, images_of, pictures, sets_page, tables};
+use super::{board, checks, discs, figures, images_of, sets_page, tables};
+use crate::canvas::write_pictures;
 use crate::corners::Pictured;
+use crate::html::Figures;
 use crate::markdown::MarkdownTable;
-use crate::plain;
+use crate::plot::Figure;
+use crate::{Canvas, plain};
 
 /// Images and rejected points that a page names one by one.
 const MOST: usize = 200;
@@ -34,14 +36,26 @@ pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], doub
     let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{}**\n\n", escape::markdown(&headline)));
     let before: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
     let warnings: String = warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect();
-    let pictures = pictures::draw(calibration, &maps, folder)?;
+    let corners = figures::corners(calibration);
+    let drawn = figures::figures(calibration, &maps, &corners);
     let next = NextSection::of(calibration);
-    next.write(folder)?;
-    let (head, rest) = (facts_and_parameters(calibration), rest(calibration, &pictures, &next.text));
+    let mut pictures: Vec<(String, Canvas)> = drawn.all().chain(&next.figures).map(|figure| (figure.file(), figure.picture())).collect();
+    let mut in_place: Figures = drawn.all().chain(&next.figures).map(|figure| (figure.file(), figure.html())).collect();
+    let mut shown: Vec<(String, String)> = drawn.first.iter().map(|figure| (figure.caption.clone(), figure.file())).collect();
+    for camera in 0..calibration.cameras() {
+        for (file, caption, canvas) in figures::panels(calibration, camera, &corners) {
+            // In the page it is the figure of all images that shows one of them.
+            in_place.insert(file.clone(), String::new());
+            shown.push((caption, file.clone()));
+            pictures.push((file, canvas));
+        }
+    }
+    write_pictures(folder, &pictures)?;
+    let (head, rest) = (facts_and_parameters(calibration), rest(calibration, (&shown, &drawn.distortion), &next.text));
     let text = format!("# Calibration\n\n{before}{headline}{head}{warnings}{rest}");
     folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
     // Doubts and warnings are at its head.
-    let page = html::page(calibration, &format!("{head}{rest}"), (&maps, next.figures), (photos, doubts));
+    let page = html::page(calibration, (&format!("{head}{rest}"), in_place), &corners, (photos, doubts));
     folder.write("report.html", |file| file.write_all(page.as_bytes()))
 }
 
@@ -55,14 +69,20 @@ fn facts_and_parameters(calibration: &Calibration<'_>) -> String {
 }
 
 /// What comes below the warnings.
-fn rest(calibration: &Calibration<'_>, pictures: &[Picture], next: &str) -> String {
+fn rest(calibration: &Calibration<'_>, (pictures, distortion): (&[(String, String)], &[Option<Figure>]), next: &str) -> String {
     let mut text = checks::section(calibration);
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
     }
     text.push_str("\n## Residuals, correlations, uncertainty\n");
-    for picture in pictures {
-        let _ = write!(text, "\n![{0}]({1})\n\n{0}\n", picture.caption, picture.file);
+    for (caption, file) in pictures {
+        let _ = write!(text, "\n![{caption}]({file})\n\n{caption}\n");
+    }
+    for (camera, figure) in distortion.iter().enumerate() {
+        if let Some(figure) = figure {
+            let (of, caption, file) = (calibration.of(camera), &figure.caption, figure.file());
+            let _ = write!(text, "\n## Distortion{of}\n\n![{caption}]({file})\n\n{caption}\n");
+        }
     }
     text.push_str(next);
     text.push_str(&images(calibration));

@@ -10,12 +10,15 @@ use calibench_images::Reading;
 use serde_json::Value;
 
 use super::tests::{Row, number, rotation, rows, written};
-use super::{Pictured, html, uncertainty};
+use super::{Pictured, figures, html, uncertainty};
 
 /// The page with some figures.
 fn page(calibration: &Calibration<'_>, photos: &[Pictured<'_>]) -> String {
     let text = ["residuals", "distribution", "correlations", "uncertainty-far"].map(|name| format!("![{name}]({name}.png)\n\n")).concat();
-    html::page(calibration, &text, (&[uncertainty::maps(calibration, 0)], HashMap::new()), (photos, &[]))
+    let corners = figures::corners(calibration);
+    let drawn = figures::figures(calibration, &[uncertainty::maps(calibration, 0)], &corners);
+    let in_place = drawn.all().map(|figure| (figure.file(), figure.html())).collect();
+    html::page(calibration, (&text, in_place), &corners, (photos, &[]))
 }
 
 /// What stands between two texts.
@@ -39,7 +42,7 @@ fn arrows_begin_at_their_points_and_go_along_their_residuals() {
         let arrows = html.split("<path class=\"arrow\" d=\"M").skip(1).map(|rest| rest.split("/>").next().unwrap());
         let arrows: Vec<&str> = arrows.filter(|arrow| arrow.contains("data-k")).collect();
         assert_eq!(arrows.len(), 150, "all of them are among the 200 longest");
-        let times = numbers(between(&html, "together. Arrows ", " times"))[0];
+        let times = numbers(between(&html, "Arrows ", " times"))[0];
         let (mut keys, mut last) = (Vec::new(), f64::INFINITY);
         for arrow in arrows {
             let said: Vec<&str> = between(arrow, "data-t=\"", "\"").split('|').collect();

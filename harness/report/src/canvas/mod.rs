@@ -52,6 +52,8 @@ pub enum Mark {
     Diamond,
     /// A small upright cross: the truth of one among many.
     Dot,
+    /// An upright cross.
+    Upright,
 }
 
 impl Mark {
@@ -128,6 +130,7 @@ impl Canvas {
                 (-MARK - 1, -MARK - 1),
             ]],
             Mark::Plus => vec![vec![(-2 * MARK, 0), (2 * MARK, 0)], vec![(0, -2 * MARK), (0, 2 * MARK)]],
+            Mark::Upright => vec![vec![(-MARK - 2, 0), (MARK + 2, 0)], vec![(0, -MARK - 2), (0, MARK + 2)]],
             Mark::Dot => vec![vec![(-2, 0), (2, 0)], vec![(0, -2), (0, 2)]],
             Mark::Cross => vec![vec![(-MARK - 2, -MARK - 2), (MARK + 2, MARK + 2)], vec![(-MARK - 2, MARK + 2), (MARK + 2, -MARK - 2)]],
             Mark::Triangle => vec![vec![(0, -MARK), (MARK, MARK), (-MARK, MARK), (0, -MARK)]],

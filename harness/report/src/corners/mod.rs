@@ -9,8 +9,8 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 
 use crate::field::{MAP, stretch};
-use crate::html::{Plot, Said};
 use crate::plain;
+use crate::plot::{Figure, Plot, Said};
 
 pub use patches::Pictured;
 pub(crate) use patches::patches;
@@ -88,18 +88,31 @@ pub(crate) fn shown([x, y]: [f64; 2], size: ImageSize, times: f64) -> [f64; 2] {
     [x * times, y * times]
 }
 
-/// The residuals of images of one size in one frame: the figure called `id` in the page. Those without a residual are not in it.
-pub(crate) fn over_frame<'c, 'a: 'c>(id: &str, of: &str, size: ImageSize, corners: impl Iterator<Item = &'c Corner<'a>>) -> String {
+/// Residuals as vectors over a frame.
+pub(crate) struct Vectors {
+    /// The vectors, each in the group of its image.
+    pub(crate) plot: Plot,
+    /// How long they are, in a line.
+    pub(crate) remark: String,
+}
+
+/// The residuals of images of one size in one frame, at most so many of them, to be looked at so many px wide. Those without a residual are not in it.
+pub(crate) fn vectors<'c, 'a: 'c>(
+    id: &str,
+    size: ImageSize,
+    corners: impl Iterator<Item = &'c Corner<'a>>,
+    (width, most): (u32, usize),
+) -> Vectors {
     let mut all: Vec<&Corner<'_>> = corners.filter(|corner| corner.v.is_some()).collect();
     let count = all.len();
     // The order of equals is that in which they came.
     all.sort_by(|a, b| b.longest_first().total_cmp(&a.longest_first()));
-    let every = count.saturating_sub(MOST / 2).div_ceil(MOST / 2).max(1);
+    let every = count.saturating_sub(most / 2).div_ceil(most / 2).max(1);
     let drawn: Vec<&Corner<'_>> =
-        all.iter().enumerate().filter(|(place, _)| *place < MOST / 2 || place % every == 0).map(|(_, corner)| *corner).collect();
+        all.iter().enumerate().filter(|(place, _)| *place < most / 2 || place % every == 0).map(|(_, corner)| *corner).collect();
     let in_use = || all.iter().filter(|corner| corner.used != Use::LeftOut).filter_map(|corner| corner.length());
-    let times = stretched(in_use(), size, MAP);
-    let mut plot = Plot::frame(id, "Residuals of all images over the frame", size);
+    let times = stretched(in_use(), size, width);
+    let mut plot = Plot::frame(id, "Residuals of all images", size);
     for (colour, is_full) in [(1, true), (0, false)] {
         plot.series(colour, None, &SAYS);
         for corner in drawn.iter().filter(|corner| (corner.used == Use::Full) == is_full) {
@@ -109,11 +122,18 @@ pub(crate) fn over_frame<'c, 'a: 'c>(id: &str, of: &str, size: ImageSize, corner
     let doubted = all.iter().filter(|corner| corner.used != Use::Full).count();
     let doubted = if doubted > 0 { format!("; orange: {doubted} left out or of less weight") } else { String::new() };
     let some =
-        if every > 1 { format!("; of {count} the longest {} are drawn and one in {every} of the others", MOST / 2) } else { String::new() };
-    plot.figure(&format!(
-        "{of}Residuals (adjusted less observed) of all images together. Arrows {times} times their length; the longest {} px{doubted}{some}. A click chooses an image.",
-        plain(in_use().fold(0.0, f64::max))
-    ))
+        if every > 1 { format!("; of {count} the longest {} are drawn and one in {every} of the others", most / 2) } else { String::new() };
+    let longest = plain(in_use().fold(0.0, f64::max));
+    Vectors { plot, remark: format!("arrows {times} times their length; the longest {longest} px{doubted}{some}") }
+}
+
+/// The residuals of images of one size in one frame: the figure of the page and its picture, with what stands before its name and before its caption.
+pub(crate) fn over_frame<'c, 'a: 'c>(prefix: &str, of: &str, size: ImageSize, corners: impl Iterator<Item = &'c Corner<'a>>) -> Figure {
+    let name = format!("{prefix}residuals");
+    let Vectors { plot, remark } = vectors(&name, size, corners, (MAP, MOST));
+    let caption =
+        format!("{of}Residuals (adjusted less observed) of all images together. In a page that answers a click chooses an image.");
+    Figure { name, caption, remark, plot }
 }
 
 fn arrow(plot: &mut Plot, corner: &Corner<'_>, size: ImageSize, times: f64) {
@@ -160,7 +180,7 @@ mod tests {
     #[test]
     fn what_has_no_residual_is_not_drawn() {
         let all = [corner(3, "a", Some([0.3, 0.4])), corner(4, "b", None)];
-        let html = over_frame("r", "x: ", ImageSize { width: 100, height: 50 }, all.iter());
+        let html = over_frame("r-", "x: ", ImageSize { width: 100, height: 50 }, all.iter()).html();
         assert_eq!(html.matches("class=\"arrow\"").count(), 1, "{html}");
         assert!(
             html.contains("data-t=\"i|a|0.500|0.300|0.400|\" data-g=\"3\"")

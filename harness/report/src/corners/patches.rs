@@ -13,7 +13,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use rayon::prelude::*;
 
 use super::Corner;
-use crate::html::escaped;
+use crate::markup::escaped;
 use crate::plain;
 
 /// A photograph by the name of its image, and how it was read.

@@ -1,6 +1,6 @@
 //! The explorer of the atlas: one asks for one's own images, and is told what to take.
 
-use super::markup::json;
+use crate::markup::json;
 
 /// How its element begins.
 pub(super) const MARK: &str = "<div class=\"explorer\">";

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use pulldown_cmark::{Alignment, CodeBlockKind, Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 
 use super::Section;
-use super::markup::escaped;
 use crate::markdown::anchor;
+use crate::markup::escaped;
 
 /// What stands in the place of a picture, by the picture's file name: empty for one that another shows as well. Each is used once.
 pub(crate) type Figures = HashMap<String, String>;

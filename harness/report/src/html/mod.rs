@@ -4,19 +4,15 @@ mod drawing;
 mod embedded;
 pub(crate) mod explorer;
 mod from_markdown;
-mod marks;
-mod markup;
-mod plot;
 mod scene;
 
 use std::fmt::Write;
 
+use crate::markup::escaped;
+
 pub(crate) use drawing::{Drawing, svg};
 pub(crate) use embedded::{Embedded, Kind, dots, part};
 pub(crate) use from_markdown::{Converted, Figures, Groups, in_place};
-pub(crate) use marks::{Said, Shape};
-pub use markup::{escaped, json as in_script};
-pub(crate) use plot::{Axis, Plot};
 pub(crate) use scene::{Scene, ScenePoint, Station};
 
 /// The part of the script that every page begins with, ours and others': elements, files that are handed out, cells of CSV.

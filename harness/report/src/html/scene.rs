@@ -2,9 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::markup::{escaped, json as in_script};
-use super::plot::{Axis, Plot};
-use super::{Said, Shape};
+use crate::markup::{escaped, json as in_script};
+use crate::plot::{Axis, Plot, Said, Shape};
 
 /// Where an image was taken.
 pub(crate) struct Station {

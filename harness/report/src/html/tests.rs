@@ -1,5 +1,5 @@
 use super::*;
-use calibench_model::PixelPoint;
+use crate::plot::{Axis, Plot, Said, Shape};
 use calibench_model::camera::ImageSize;
 
 const HOSTILE: [&str; 4] = ["<img src=x onerror=alert(1)>.png", "</script><script>alert(2)</script>", "\"a\" & 'b'|c\\", "\u{202e}gnp.exe"];
@@ -100,24 +100,4 @@ fn a_page_asks_for_nothing() {
         }
     }
     assert!(!html.contains("@import") && !html.contains("url("));
-}
-
-#[test]
-fn marks_are_where_their_values_are() {
-    let mut plot = Plot::frame("f", "l", ImageSize { width: 101, height: 51 });
-    assert_eq!(plot.place(-0.5, -0.5), (76.0, 30.0), "the outer corner of the first pixel");
-    let (x, y) = plot.place(100.5, 50.5);
-    assert!((x - 836.0).abs() < 1e-9 && ((y - 30.0) - 760.0 * 51.0 / 101.0).abs() < 1e-9, "{x} {y}");
-    plot.series(0, None, &["a"]);
-    plot.arrow(PixelPoint::new(50.0, 25.0), (10.0, 5.0), &Said { values: vec!["1".into()], group: Some(2), key: Some(3) });
-    let html = plot.figure("c");
-    // The middle of the frame, and ten columns and five rows on: 760 / 101 px of the drawing each.
-    assert!(html.contains("d=\"M456 221.88L531.25 259.5M"), "{html}");
-    assert!(
-        html.contains("data-t=\"1\" data-g=\"2\" data-k=\"3\"") && html.contains("data-x=\"-0.5 100.5\" data-y=\"-0.5 50.5\""),
-        "{html}"
-    );
-    let log = Plot::new("g", "l", Axis { log: true, ..Axis::linear("x", [0.1, 10.0]) }, Axis::linear("y", [0.0, 4.0]), 200.0);
-    let ((x, _), (_, y)) = (log.place(1.0, 0.0), log.place(1.0, 1.0));
-    assert!((x - 456.0).abs() < 1e-9 && (y - 180.0).abs() < 1e-9, "y goes up: {x} {y}");
 }

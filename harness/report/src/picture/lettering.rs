@@ -48,7 +48,11 @@ impl Lettering {
         let [descendant, descriptor, file, letters] = std::array::from_fn(|_| next());
         pdf.type0_font(font).base_font(NAME).encoding_predefined(Name(b"Identity-H")).descendant_font(descendant).to_unicode(letters);
         let mut cid = pdf.cid_font(descendant);
-        cid.subtype(CidFontType::Type2).base_font(NAME).system_info(SYSTEM).font_descriptor(descriptor).cid_to_gid_map_predefined(Name(b"Identity"));
+        cid.subtype(CidFontType::Type2)
+            .base_font(NAME)
+            .system_info(SYSTEM)
+            .font_descriptor(descriptor)
+            .cid_to_gid_map_predefined(Name(b"Identity"));
         let mut widths = cid.widths();
         for (number, (width, _)) in &self.used {
             widths.consecutive(*number, [*width]);

@@ -50,7 +50,11 @@ pub(super) fn pdf(canvas: &Canvas) -> Vec<u8> {
     let mut states = resources.ext_g_states();
     for percent in &page.opacities {
         let part = f32::from(*percent) / 100.0;
-        states.insert(Name(format!("A{percent}").as_bytes())).start::<pdf_writer::writers::ExtGraphicsState<'_>>().stroking_alpha(part).non_stroking_alpha(part);
+        states
+            .insert(Name(format!("A{percent}").as_bytes()))
+            .start::<pdf_writer::writers::ExtGraphicsState<'_>>()
+            .stroking_alpha(part)
+            .non_stroking_alpha(part);
     }
     states.finish();
     resources.finish();
@@ -115,7 +119,8 @@ impl Page {
             match run {
                 Run::Scale(rows) => rows.chunks(STEP).for_each(|rows| self.band(rows)),
                 Run::Dots(pixels) => {
-                    let dot = |stroke: &Stroke| if let Stroke::Dots(at, count, colour) = stroke { Some((*at, *count, *colour)) } else { None };
+                    let dot =
+                        |stroke: &Stroke| if let Stroke::Dots(at, count, colour) = stroke { Some((*at, *count, *colour)) } else { None };
                     self.image(dots(pixels.iter().filter_map(dot)));
                 }
                 Run::One(stroke) => self.draw(stroke),
@@ -133,7 +138,9 @@ impl Page {
     fn draw(&mut self, stroke: &Stroke) {
         match stroke {
             Stroke::Line([from, to], pen) => self.line(pen, &path(&[*from, *to])),
-            Stroke::Path(places, pen) => self.line(pen, &ring(places).map_or_else(|| path(places), |(centre, radius)| circle(centre, radius))),
+            Stroke::Path(places, pen) => {
+                self.line(pen, &ring(places).map_or_else(|| path(places), |(centre, radius)| circle(centre, radius)))
+            }
             Stroke::Polygon(corners, colour) => self.fill(*colour, &format!("{} h", path(corners))),
             Stroke::Rectangle([from, to], pen, true) => self.fill(pen.colour, &rectangle(*from, *to)),
             Stroke::Rectangle([from, to], pen, false) => self.line(pen, &rectangle(*from, *to)),

@@ -89,7 +89,9 @@ fn pdf_holds_every_stroke_at_its_place() {
     let streams = streams(&pdf);
     let content = String::from_utf8(streams[0].clone()).unwrap();
     assert!(content.starts_with("0.75 0 0 -0.75 0 150 cm 1 1 1 rg 0 0 300 200 re f\n"), "{content}");
-    for part in ["10 10 50 40 re S", "101 102 m 103 107 l  S", "5 190 m", "q 20 0 0 -15 200 35 cm /I0 Do Q", "q 9 0 0 -1 250 151 cm /I1 Do Q"] {
+    for part in
+        ["10 10 50 40 re S", "101 102 m 103 107 l  S", "5 190 m", "q 20 0 0 -15 200 35 cm /I0 Do Q", "q 9 0 0 -1 250 151 cm /I1 Do Q"]
+    {
         assert_eq!(content.matches(part).count(), 1, "{part}: {content}");
     }
     // A disc a quarter opaque, and what follows opaque again.

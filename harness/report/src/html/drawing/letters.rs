@@ -7,7 +7,7 @@ use plotters_backend::text_anchor::{HPos, VPos};
 
 use super::pencil::hex;
 use crate::canvas::{EM, Written};
-use crate::html::markup::escaped;
+use crate::markup::escaped;
 
 /// The size of a drawing's text, px, as the page's style has it.
 const USUAL_SIZE: f64 = 15.0;

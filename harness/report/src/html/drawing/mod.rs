@@ -4,8 +4,8 @@ mod letters;
 mod pencil;
 mod series;
 
-use super::markup::escaped;
 use crate::Canvas;
+use crate::markup::escaped;
 
 /// A picture as a drawing, before it is known where it stands.
 pub(crate) struct Drawing {

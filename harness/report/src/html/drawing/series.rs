@@ -5,11 +5,11 @@ use std::fmt::Write;
 
 use plotters_backend::BackendCoord;
 
-use super::super::markup::{between_bars, escaped};
 use super::letters::Lettering;
 use super::pencil::Pencil;
 use crate::Canvas;
 use crate::canvas::{Depth, Owner, Stroke};
+use crate::markup::{between_bars, escaped};
 
 /// The names of the series and of the values that are said, as attributes of what holds them.
 pub(super) fn attributes(canvas: &Canvas) -> String {

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::markup::between_bars;
+use crate::canvas::Mark;
+use crate::markup::between_bars;
 
 /// What a mark says, to what it belongs, and what it is.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +39,76 @@ impl Said {
     }
 }
 
+/// What lies inside the axes of a plot; places are values of x and y.
+#[derive(Clone, Debug)]
+pub(super) enum Element {
+    /// What follows is of a series: its colour, the name by which it is hidden, and what its values are called.
+    Series {
+        colour: usize,
+        name: Option<String>,
+        says: Vec<String>,
+    },
+    Symbol {
+        shape: Shape,
+        at: (f64, f64),
+        said: Said,
+    },
+    Arrow {
+        from: (f64, f64),
+        to: (f64, f64),
+        said: Said,
+    },
+    Cell {
+        corners: [(f64, f64); 2],
+        fill: Option<[u8; 3]>,
+        said: Said,
+    },
+    Line {
+        places: Vec<(f64, f64)>,
+        said: Said,
+    },
+    Dashed(Vec<(f64, f64)>),
+    Contour(Vec<[(f64, f64); 2]>),
+    Dots(Vec<(f64, f64)>),
+    Ring((f64, f64)),
+    Whisker {
+        x: f64,
+        ends: [f64; 2],
+        said: Said,
+    },
+    Note {
+        at: (f64, f64),
+        text: String,
+        is_on_shade: bool,
+    },
+    Tag {
+        at: (f64, f64),
+        text: String,
+    },
+}
+
+/// A line of a legend.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// The number of its colour.
+    pub(super) colour: usize,
+    /// Its symbol.
+    pub(super) shape: Shape,
+    /// What it stands for.
+    pub(super) name: String,
+    /// Whether that is the name of a series that is hidden by it.
+    pub(super) is_series: bool,
+}
+
+/// A scale of shades beside a plot.
+#[derive(Clone, Debug)]
+pub(super) struct Shades {
+    /// Its title.
+    pub(super) title: String,
+    /// What stands at which part of it, 0 to 1 from below.
+    pub(super) levels: Vec<(f64, String)>,
+}
+
 /// The shape of a symbol; no two series of a plot share it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
@@ -52,6 +123,18 @@ pub(crate) enum Shape {
 impl Shape {
     /// In the order of use.
     pub(crate) const ALL: [Self; 6] = [Self::Circle, Self::Cross, Self::Triangle, Self::Diamond, Self::Square, Self::Plus];
+
+    /// As pictures draw it.
+    pub(super) const fn mark(self) -> Mark {
+        match self {
+            Self::Circle => Mark::Circle,
+            Self::Cross => Mark::Cross,
+            Self::Triangle => Mark::Triangle,
+            Self::Diamond => Mark::Diamond,
+            Self::Square => Mark::Square,
+            Self::Plus => Mark::Upright,
+        }
+    }
 
     /// Its outline about the origin, px of the drawing.
     pub(super) const fn path(self) -> &'static str {
