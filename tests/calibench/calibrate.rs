@@ -155,7 +155,17 @@ fn the_scene_is_whole(scene: &str, stations: &[HashMap<String, String>]) {
 
 fn the_report_is_whole(report: &Path) {
     let page = std::fs::read_to_string(report.join("README.md")).unwrap();
-    let pictures = ["residuals", "residuals-by-image-1", "rms-by-image", "distortion", "distribution", "correlations", "uncertainty-far", "uncertainty-near", "next"];
+    let pictures = [
+        "residuals",
+        "residuals-by-image-1",
+        "rms-by-image",
+        "distortion",
+        "distribution",
+        "correlations",
+        "uncertainty-far",
+        "uncertainty-near",
+        "next",
+    ];
     for picture in pictures {
         assert!(page.contains(&format!("({picture}.png)")), "{picture}");
         let image = image::open(report.join(format!("{picture}.png"))).unwrap().to_rgb8();

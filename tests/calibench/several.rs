@@ -94,7 +94,16 @@ fn cameras_that_share_fixed_control_alone_are_those_of_separate_calibrations() {
     let report = folder.path().join("report");
     let page = std::fs::read_to_string(report.join("README.md")).unwrap();
     for name in ["left", "right"] {
-        for picture in ["residuals", "residuals-by-image-1", "rms-by-image", "distortion", "distribution", "correlations", "uncertainty-far", "uncertainty-near"] {
+        for picture in [
+            "residuals",
+            "residuals-by-image-1",
+            "rms-by-image",
+            "distortion",
+            "distribution",
+            "correlations",
+            "uncertainty-far",
+            "uncertainty-near",
+        ] {
             let file = format!("{name}-{picture}.png");
             assert!(page.contains(&format!("({file})")) && report.join(&file).is_file(), "{file}");
         }

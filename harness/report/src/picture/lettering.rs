@@ -7,7 +7,7 @@ use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, Str};
 use subsetter::GlyphRemapper;
 use ttf_parser::{Face, GlyphId};
 
-use super::pdf::deflated;
+use super::deflated::deflated;
 
 const DATA: &[u8] = ttf_noto_sans::REGULAR;
 const NAME: Name<'_> = Name(b"CALIBE+NotoSans");

@@ -1,5 +1,6 @@
 //! Pictures as files: pixels, or lines and text that can be scaled and edited.
 
+mod deflated;
 mod lettering;
 mod pdf;
 

@@ -2,13 +2,12 @@
 
 use std::fmt::Write;
 
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use plotters::style::FontTransform;
 use plotters_backend::text_anchor::HPos;
 use plotters_backend::{BackendColor, BackendCoord};
 
+use super::deflated::deflated;
 use super::lettering::Lettering;
 use crate::Canvas;
 use crate::canvas::{EM, Pen, Run, STEP, Stroke, Written, ring, row, runs};
@@ -65,14 +64,6 @@ pub(super) fn pdf(canvas: &Canvas) -> Vec<u8> {
     }
     page.lettering.write(&mut pdf, font, &mut next);
     pdf.finish()
-}
-
-/// zlib, as PDF has it.
-pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
-    let mut out = ZlibEncoder::new(Vec::new(), Compression::default());
-    // Writing to memory cannot fail.
-    let _ = std::io::Write::write_all(&mut out, bytes);
-    out.finish().unwrap_or_default()
 }
 
 /// Adds an image; what is transparent in it as a mask.
@@ -139,7 +130,7 @@ impl Page {
         match stroke {
             Stroke::Line([from, to], pen) => self.line(pen, &path(&[*from, *to])),
             Stroke::Path(places, pen) => {
-                self.line(pen, &ring(places).map_or_else(|| path(places), |(centre, radius)| circle(centre, radius)))
+                self.line(pen, &ring(places).map_or_else(|| path(places), |(centre, radius)| circle(centre, radius)));
             }
             Stroke::Polygon(corners, colour) => self.fill(*colour, &format!("{} h", path(corners))),
             Stroke::Rectangle([from, to], pen, true) => self.fill(pen.colour, &rectangle(*from, *to)),

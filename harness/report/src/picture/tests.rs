@@ -50,7 +50,7 @@ fn svg_needs_no_style_sheet_and_holds_every_stroke() {
     let text = String::from_utf8(written("svg")).unwrap();
     let document = roxmltree::Document::parse(&text).unwrap();
     let texts: Vec<_> = document.descendants().filter(|node| node.has_tag_name("text")).collect();
-    let said: Vec<&str> = texts.iter().filter_map(|node| node.text()).collect();
+    let said: Vec<&str> = texts.iter().filter_map(roxmltree::Node::text).collect();
     assert_eq!(said, ["a < b", "rim", "rim", "σ 95 %", "upright"], "a rim is a text below");
     assert!(texts.iter().all(|node| node.has_attribute("font-size") && node.has_attribute("dy") && !node.has_attribute("class")));
     // 16 px from the highest to the lowest letter are an em of 11.75, and its capitals 8.39 high.

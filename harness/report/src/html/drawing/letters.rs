@@ -5,7 +5,7 @@ use std::fmt::Write;
 use plotters::style::FontTransform;
 use plotters_backend::text_anchor::{HPos, VPos};
 
-use super::pencil::hex;
+use super::colour::hex;
 use crate::canvas::{EM, Written};
 use crate::markup::escaped;
 

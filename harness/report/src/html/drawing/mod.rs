@@ -1,5 +1,6 @@
 //! A picture as a drawing of lines: what was drawn, once more.
 
+mod colour;
 mod letters;
 mod pencil;
 mod series;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use plotters_backend::{BackendColor, BackendCoord};
 
+use super::colour::paint;
 use super::letters::{self, Lettering};
 use crate::canvas::{Run, STEP, Stroke, Written, ring, row, runs};
 use crate::html::embedded::{self, Embedded};
@@ -183,19 +184,6 @@ impl Pencil {
             "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" href=\"{url}\"/>"
         );
     }
-}
-
-pub(super) fn hex(BackendColor { rgb: (r, g, b), .. }: BackendColor) -> String {
-    if [r, g, b].iter().all(|part| part % 17 == 0) {
-        format!("#{:x}{:x}{:x}", r / 17, g / 17, b / 17)
-    } else {
-        format!("#{r:02x}{g:02x}{b:02x}")
-    }
-}
-
-fn paint(what: &str, colour: BackendColor) -> String {
-    let alpha = if colour.alpha < 1.0 { format!(" {what}-opacity=\"{:.2}\"", colour.alpha) } else { String::new() };
-    format!("{what}=\"{}\"{alpha}", hex(colour))
 }
 
 #[cfg(test)]
