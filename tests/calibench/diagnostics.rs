@@ -104,7 +104,7 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         ("window = 11", "window = 10", "23:10", &["odd number from 3 to 31", "found 10"]),
         ("window = 11", "window = nan", "23:10", &["odd number from 3 to 31", "found NaN"]),
         ("window = 11", "windw = 11", "23:1", &["no parameter `windw`", "did you mean `window`"]),
-        ("window = 11", "window = \"big\"", "23:10", &["is a number, found string"]),
+        ("window = 11", "window = \"big\"", "23:10", &["must be an odd number from", "found big"]),
         ("window = 11", "window = 11\n\n[[method]]\nname = \"forstner\"", "25:1", &["listed twice"]),
         ("window = 11", "window = 11\nwindow = 13", "24:1", &["duplicate key"]),
         (

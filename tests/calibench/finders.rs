@@ -1,5 +1,6 @@
 //! Methods that find boards: one conformance test for all, OpenCV's too, and scenarios that ask them for what they do not know.
 
+use calibench_measure::parameter::Domain;
 use calibench_opencv::registry;
 use calibench_run::origin::{check_origins, origin_of, origins};
 
@@ -10,14 +11,14 @@ const ALL: [&str; 12] = [
     "detect",
     "calib_targets",
     "opencv_find_chessboard",
-    "opencv_find_chessboard:sb=1",
+    "opencv_find_chessboard:sb=yes",
     "opencv_find_charuco",
-    "opencv_find_charuco:corrected=1",
+    "opencv_find_charuco:corrected=yes",
     "opencv_find_aprilgrid",
-    "opencv_find_aprilgrid:refinement=1",
-    "opencv_find_aprilgrid:refinement=2",
-    "opencv_find_aprilgrid:refinement=3",
-    "opencv_find_aprilgrid:refinement=3,corrected=1",
+    "opencv_find_aprilgrid:refinement=subpix",
+    "opencv_find_aprilgrid:refinement=contour",
+    "opencv_find_aprilgrid:refinement=apriltag",
+    "opencv_find_aprilgrid:refinement=apriltag,corrected=yes",
     "opencv_find_circles",
 ];
 
@@ -47,7 +48,7 @@ fn every_finder_has_its_points_where_it_states_them() {
 fn the_half_pixel_of_opencv_is_known_and_taken_out() {
     let board = "charuco:8x5:30:15:DICT_4X4_50".parse().unwrap();
     let registry = registry();
-    for (text, expected) in [("opencv_find_charuco", 0.5), ("opencv_find_charuco:corrected=1", 0.0), ("detect", 0.0)] {
+    for (text, expected) in [("opencv_find_charuco", 0.5), ("opencv_find_charuco:corrected=yes", 0.0), ("detect", 0.0)] {
         let method = registry.parse(text).unwrap();
         let Some(finder) = method.board_finder() else { continue };
         let found = origin_of(finder, board).unwrap();
@@ -177,4 +178,24 @@ fn rows_and_counts_of_a_finder_agree() {
         line.split(',').nth(6).unwrap().parse::<f64>().unwrap()
     };
     assert_eq!([count("targets"), count("labels"), count("labelled"), count("wrong labels"), count("off")], [54.0, 54.0, 54.0, 0.0, 0.0]);
+}
+
+/// Baselines of 0.2.0 and older have the numbers of choices: each is read as the method is called today, and no choice is forgotten.
+#[test]
+fn choices_in_older_baselines_are_read_by_their_names() {
+    let registry = registry();
+    let mut seen = 0;
+    for method in registry.methods() {
+        for parameter in method.parameters {
+            let Domain::Named(names) = parameter.domain else { continue };
+            for place in 0..names.len() {
+                let old = format!("{}={place}", parameter.name);
+                let now = registry.parse(&format!("{}:{old}", method.name)).unwrap();
+                let named = now.settings.written().find(|(name, _)| *name == parameter.name).map(|(name, value)| format!("{name}={value}"));
+                assert_eq!(Some(calibench_gate::present_settings(method.name, &old)), named, "{}", method.name);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 40, "{seen}");
 }

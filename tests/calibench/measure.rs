@@ -162,7 +162,7 @@ fn bad_input_is_named_and_leaves_the_old_output() {
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
         assert_eq!(std::fs::read_to_string(folder.path().join("out.csv")).unwrap(), "old", "{arguments:?}");
     }
-    let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-m", "lsm:shape=1"]);
+    let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-m", "lsm:shape=corner"]);
     assert!(output.status.success(), "told by the method's parameter: {}", stderr(&output));
     let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-o", "no/such/out.csv"]);
     assert_eq!(output.status.code(), Some(2));

@@ -59,7 +59,14 @@ fn methods(context: &Context<'_>) -> Result<String, Failure> {
     for method in context.registry()?.methods() {
         let _ = writeln!(text, "{} (version {})\n    {}\n    source: {}", method.name, method.version, method.about, method.source);
         for parameter in method.parameters {
-            let _ = writeln!(text, "    {}={}: {}; {}", parameter.name, parameter.default, parameter.about, parameter.domain.describe());
+            let _ = writeln!(
+                text,
+                "    {}={}: {}; {}",
+                parameter.name,
+                parameter.domain.setting(parameter.default),
+                parameter.about,
+                parameter.domain.describe()
+            );
         }
         if let Build::Unavailable(why) = method.build {
             let _ = writeln!(text, "    unavailable: {why}");

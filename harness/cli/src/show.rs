@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use calibench_images::read_photo;
+use calibench_measure::Setting;
 use calibench_measure::registry::KINDS;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, PixelPoint, TargetKind};
@@ -82,8 +83,11 @@ fn card(scenario: &Scenario) -> String {
     for method in &scenario.methods {
         let name = method.label.split(':').next().unwrap_or_default();
         let _ = writeln!(text, "\n[[method]] # {}, version {}\nname = \"{name}\"", method.label, method.version);
-        for (key, value) in method.settings.iter() {
-            let _ = writeln!(text, "{key} = {value}");
+        for (key, setting) in method.settings.written() {
+            let _ = match setting {
+                Setting::Number(value) => writeln!(text, "{key} = {value}"),
+                Setting::Name(name) => writeln!(text, "{key} = {}", quoted(&name)),
+            };
         }
         if let Some(kinds) = &method.kinds {
             let _ = writeln!(text, "{KINDS} = {:?}", kinds.iter().map(TargetKind::name).collect::<Vec<_>>());

@@ -11,6 +11,8 @@ use csv::{Position, StringRecord};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::spelling::{present_label, present_settings};
+
 /// The number of this format.
 const FORMAT: u32 = 2;
 const FIRST: &str = "# Blessed numbers of calibench: written by `calibench bless`, never by hand.";
@@ -213,7 +215,12 @@ pub fn read(path: &Path, kind: Kind, columns: &[&str]) -> Result<Option<Sheet>, 
     };
     let toml: String = head[2..].iter().map(|line| line.trim_start_matches("# ").trim_start_matches('#').to_owned() + "\n").collect();
     let wrong = |error: toml::de::Error| damaged(format!("its head means nothing ({}); restore it, or bless anew", error.message()));
-    let parsed: Head = toml::from_str(&toml).map_err(wrong)?;
+    let mut parsed: Head = toml::from_str(&toml).map_err(wrong)?;
+    for method in &mut parsed.method {
+        let operator = method.label.split(':').next().unwrap_or_default();
+        method.settings = present_settings(operator, &method.settings);
+        method.label = present_label(&method.label);
+    }
     if parsed.format != FORMAT || parsed.kind != kind {
         return Err(damaged(format!(
             "its head says format {} and {:?}, expected {FORMAT} and {kind:?}; bless anew",

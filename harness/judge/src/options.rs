@@ -13,7 +13,7 @@ pub const METHODS: [&str; 9] = [
     "harris_paraboloid:window=11",
     "opencv_subpix:window=11",
     "parametric_corner:window=15",
-    "lsm:window=15,shape=2",
+    "lsm:window=15,shape=chess_corner",
     "chess_corners",
 ];
 

@@ -48,6 +48,6 @@ pub use finder::{BoardFinder, BoardPointFound, Sought};
 pub use kinds::{Kinds, KindsError};
 pub use operator::{Finds, Operator};
 pub use operators::*;
-pub use parameter::{Parameter, Settings};
+pub use parameter::{Parameter, Setting, Settings};
 pub use recorded::{ImageId, Known, Recorded, RunId};
 pub use registry::{Build, Configured, Method, Outside, Registry};

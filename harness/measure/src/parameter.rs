@@ -1,5 +1,7 @@
 //! Parameters of operators: declared once, checked here, described in `list` and in the scenario schema.
 
+use std::fmt;
+
 use crate::error::MethodError;
 
 /// The parameter by which an operator tests whether a window holds what it measures, in standard deviations, and its value for photographs.
@@ -32,6 +34,8 @@ pub enum Domain {
     },
     /// One of these whole numbers, which are in order.
     Choice(&'static [u32]),
+    /// One of these names; its value is the place in the list, and may be given as such.
+    Named(&'static [&'static str]),
 }
 
 impl Domain {
@@ -40,7 +44,7 @@ impl Domain {
         let (min, max) = self.range();
         let right_form = match self {
             Self::Odd { .. } => value.fract() == 0.0 && value.rem_euclid(2.0) == 1.0,
-            Self::Whole { .. } => value.fract() == 0.0,
+            Self::Whole { .. } | Self::Named(_) => value.fract() == 0.0,
             Self::Choice(choices) => choices.iter().any(|choice| f64::from(*choice) == value),
             Self::Real { .. } => true,
         };
@@ -52,6 +56,7 @@ impl Domain {
         match self {
             Self::Odd { min, max } | Self::Whole { min, max } => (f64::from(min), f64::from(max)),
             Self::Real { min, max } => (min, max),
+            Self::Named(names) => (0.0, names.len() as f64 - 1.0),
             Self::Choice(choices) => [choices.first(), choices.last()].map(|end| end.map_or(f64::NAN, |end| f64::from(*end))).into(),
         }
     }
@@ -63,13 +68,56 @@ impl Domain {
             Self::Odd { .. } => format!("an odd number from {min} to {max}"),
             Self::Whole { .. } => format!("a whole number from {min} to {max}"),
             Self::Choice(choices) => format!("one of {}", choices.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
+            Self::Named(names) => format!("one of {}", names.join(", ")),
             Self::Real { .. } => format!("a number from {min} to {max}"),
+        }
+    }
+
+    /// The value that `setting` means; `None` for a name that there is not.
+    fn value(self, setting: &Setting) -> Option<f64> {
+        match (self, setting) {
+            (_, Setting::Number(value)) => Some(*value),
+            (Self::Named(names), Setting::Name(name)) => names.iter().position(|known| known == name).map(|place| place as f64),
+            (_, Setting::Name(_)) => None,
+        }
+    }
+
+    /// The setting that `value` is, as it is written.
+    pub fn setting(self, value: f64) -> Setting {
+        match self {
+            Self::Named(names) => names.get(value as usize).map_or(Setting::Number(value), |name| Setting::Name((*name).to_owned())),
+            _ => Setting::Number(value),
+        }
+    }
+}
+
+/// What is given for a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// A number, in the unit of the parameter.
+    Number(f64),
+    /// The name of a choice.
+    Name(String),
+}
+
+impl Setting {
+    /// A number, or else a name.
+    pub fn parse(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Number)
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Name(name) => f.write_str(name),
         }
     }
 }
 
 /// A declared parameter of a method.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
     /// Its key.
     pub name: &'static str,
@@ -108,6 +156,16 @@ impl Parameter {
         Self::new(name, about, Domain::Choice(of), default)
     }
 
+    /// One of some names, the one at a place at first.
+    pub const fn named(name: &'static str, about: &'static str, of: &'static [&'static str], default: usize) -> Self {
+        Self::new(name, about, Domain::Named(of), default as f64)
+    }
+
+    /// Yes or no, no at first.
+    pub const fn flag(name: &'static str, about: &'static str) -> Self {
+        Self::named(name, about, &["no", "yes"], 0)
+    }
+
     /// The same, as part of the method's label even at its default.
     #[must_use]
     pub const fn always_shown(self) -> Self {
@@ -118,17 +176,17 @@ impl Parameter {
 /// Checked values of all parameters of one method, in the order of their declaration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    values: Vec<(&'static str, f64)>,
+    values: Vec<(Parameter, f64)>,
 }
 
 impl Settings {
-    /// The defaults of `parameters`, changed by `given`: keys, and values in the unit of the parameter.
+    /// The defaults of `parameters`, changed by `given`: keys, and values in the unit of the parameter or names.
     ///
     /// # Errors
     /// An unknown key, a key given twice, a value outside its domain.
-    pub fn resolve(method: &str, parameters: &[Parameter], given: &[(String, f64)]) -> Result<Self, MethodError> {
-        let mut values: Vec<(&'static str, f64)> = parameters.iter().map(|p| (p.name, p.default)).collect();
-        for (index, (key, value)) in given.iter().enumerate() {
+    pub fn resolve(method: &str, parameters: &[Parameter], given: &[(String, Setting)]) -> Result<Self, MethodError> {
+        let mut values: Vec<(Parameter, f64)> = parameters.iter().map(|p| (*p, p.default)).collect();
+        for (index, (key, setting)) in given.iter().enumerate() {
             let Some(position) = parameters.iter().position(|p| p.name == key) else {
                 let known = parameters.iter().map(|p| p.name.to_owned()).collect();
                 return Err(MethodError::UnknownParameter { method: method.to_owned(), key: key.clone(), known });
@@ -137,11 +195,11 @@ impl Settings {
                 return Err(MethodError::Twice { method: method.to_owned(), key: key.clone() });
             }
             let domain = parameters[position].domain;
-            if !domain.holds(*value) {
+            let Some(value) = domain.value(setting).filter(|value| domain.holds(*value)) else {
                 let expected = domain.describe();
-                return Err(MethodError::Domain { method: method.to_owned(), key: key.clone(), expected, found: value.to_string() });
-            }
-            values[position].1 = *value;
+                return Err(MethodError::Domain { method: method.to_owned(), key: key.clone(), expected, found: setting.to_string() });
+            };
+            values[position].1 = value;
         }
         Ok(Self { values })
     }
@@ -151,7 +209,7 @@ impl Settings {
     /// # Panics
     /// If the method did not declare it: a mistake in the operator's file that its first test finds.
     pub fn get(&self, name: &str) -> f64 {
-        self.values.iter().find(|(key, _)| *key == name).unwrap_or_else(|| panic!("no parameter `{name}` was declared")).1
+        self.values.iter().find(|(parameter, _)| parameter.name == name).unwrap_or_else(|| panic!("no parameter `{name}` was declared")).1
     }
 
     /// A window (px) or another whole number.
@@ -164,6 +222,17 @@ impl Settings {
 
     /// All names and values, in the order of their declaration.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
-        self.values.iter().copied()
+        self.values.iter().map(|(parameter, value)| (parameter.name, *value))
+    }
+
+    /// All names and values as they are written, in the order of their declaration.
+    pub fn written(&self) -> impl Iterator<Item = (&'static str, Setting)> + '_ {
+        self.values.iter().map(|(parameter, value)| (parameter.name, parameter.domain.setting(*value)))
+    }
+
+    /// As [`Self::written`], of what a label shows: what is not at its default, or shown always.
+    pub(crate) fn shown(&self) -> impl Iterator<Item = (&'static str, Setting)> + '_ {
+        let shown = self.values.iter().filter(|(parameter, value)| parameter.always_shown || *value != parameter.default);
+        shown.map(|(parameter, value)| (parameter.name, parameter.domain.setting(*value)))
     }
 }

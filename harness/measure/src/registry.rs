@@ -8,7 +8,7 @@ use crate::error::MethodError;
 use crate::finder::BoardFinder;
 use crate::kinds::Kinds;
 use crate::operator::Operator;
-use crate::parameter::{ON_PHOTOGRAPHS, Parameter, SIGNIFICANCE, Settings};
+use crate::parameter::{ON_PHOTOGRAPHS, Parameter, SIGNIFICANCE, Setting, Settings};
 use crate::recorded::Recorded;
 
 /// A method as it is listed: an operator whose parameters are yet to be set.
@@ -88,7 +88,7 @@ impl Configured {
     /// All parameters with their values, those at their defaults among them, and the kinds if it is limited.
     pub fn all_settings(&self) -> String {
         let kinds = self.kinds.as_ref().map(|kinds| format!("{KINDS}={kinds}"));
-        self.settings.iter().map(|(name, value)| format!("{name}={value}")).chain(kinds).collect::<Vec<_>>().join(",")
+        self.settings.written().map(|(name, value)| format!("{name}={value}")).chain(kinds).collect::<Vec<_>>().join(",")
     }
 
     /// What it was recorded as, if it was.
@@ -159,11 +159,11 @@ impl Registry {
         self.methods.iter().any(|method| method.name == name)
     }
 
-    /// The method called `name`, with `given` parameters: keys, and values in the unit of the parameter.
+    /// The method called `name`, with `given` parameters: keys, and values in the unit of the parameter or names.
     ///
     /// # Errors
     /// An unknown method or parameter, a value outside its domain, files of a method from outside that are wrong.
-    pub fn configure(&self, name: &str, given: &[(String, f64)]) -> Result<Configured, MethodError> {
+    pub fn configure(&self, name: &str, given: &[(String, Setting)]) -> Result<Configured, MethodError> {
         let Some(method) = self.methods.iter().find(|m| m.name == name) else {
             let known = self.methods.iter().map(|m| m.name.to_owned()).collect();
             return Err(MethodError::UnknownMethod { name: name.to_owned(), known });
@@ -197,7 +197,7 @@ impl Registry {
         for pair in rest.split(',').filter(|pair| !pair.is_empty()) {
             let (key, value) = pair.split_once('=').ok_or_else(malformed)?;
             if key.trim() != KINDS {
-                given.push((key.trim().to_owned(), value.trim().parse().map_err(|_| malformed())?));
+                given.push((key.trim().to_owned(), Setting::parse(value.trim())));
             } else if kinds.replace(value).is_some() {
                 return Err(MethodError::Twice { method: name.trim().to_owned(), key: KINDS.to_owned() });
             }
@@ -235,8 +235,7 @@ fn before_the_name(text: &str) -> (Option<&str>, &str) {
 }
 
 fn label(method: &Method, settings: &Settings) -> String {
-    let shown = method.parameters.iter().zip(settings.iter()).filter(|(p, (_, value))| p.always_shown || *value != p.default);
-    let pairs: Vec<String> = shown.map(|(_, (key, value))| format!("{key}={value}")).collect();
+    let pairs: Vec<String> = settings.shown().map(|(key, value)| format!("{key}={value}")).collect();
     if pairs.is_empty() { method.name.to_owned() } else { format!("{}:{}", method.name, pairs.join(",")) }
 }
 
@@ -256,6 +255,27 @@ mod tests {
         assert_eq!(registry.parse("harris_paraboloid:k=0.2,sigma=2,window=7").unwrap().label, "harris_paraboloid:window=7,sigma=2");
         assert_eq!(registry.parse("forstner:window=15").unwrap().default_label, "forstner:window=11");
         assert_eq!(registry.parse("pixel").unwrap().label, "pixel");
+    }
+
+    #[test]
+    fn choices_have_names_and_are_read_by_their_numbers() {
+        let label = |text: &str| Registry::builtin().parse(text).unwrap().label;
+        for (number, name) in [
+            ("lsm:window=15,shape=2,neighbours=0", "lsm:window=15,shape=chess_corner,neighbours=counted"),
+            ("lsm:sharpness=0", "lsm:window=15,sharpness=held"),
+            ("forstner:covariance=1", "forstner:window=11,covariance=noise"),
+            ("parametric_corner:gradient=3,curvature=1", "parametric_corner:window=15,gradient=both,curvature=yes"),
+            ("chess_corners:detector=1,refiner=0", "chess_corners:detector=radon,refiner=own"),
+        ] {
+            assert_eq!((label(number).as_str(), label(name).as_str()), (name, name));
+        }
+        assert_eq!(label("lsm:shape=0,sharpness=1"), "lsm:window=15", "as at first");
+        let message = error("lsm:shape=chess").to_string();
+        assert!(message.contains("one of start, corner, chess_corner, junction, cross") && message.ends_with("found chess"), "{message}");
+        assert!(matches!(error("lsm:shape=8"), MethodError::Domain { .. }));
+        assert!(matches!(error("lsm:shape=1.5"), MethodError::Domain { .. }));
+        let all = Registry::builtin().parse("lsm:shape=5").unwrap().all_settings();
+        assert!(all.contains("shape=disc,") && all.contains("sharpness=sought,neighbours=left_out,"), "{all}");
     }
 
     #[test]
@@ -300,11 +320,10 @@ mod tests {
     fn mistakes_are_named() {
         assert!(matches!(error("forster"), MethodError::UnknownMethod { .. }));
         assert!(matches!(error("forstner:windw=3"), MethodError::UnknownParameter { .. }));
-        for bad in ["10", "1", "33", "11.5", "NaN", "inf", "-3"] {
+        for bad in ["10", "1", "33", "11.5", "NaN", "inf", "-3", "x", ""] {
             assert!(matches!(error(&format!("forstner:window={bad}")), MethodError::Domain { .. }), "{bad}");
         }
         assert!(matches!(error("forstner:window"), MethodError::Form { .. }));
-        assert!(matches!(error("forstner:window=x"), MethodError::Form { .. }));
         assert!(matches!(error("forstner:window=3,window=5"), MethodError::Twice { .. }));
         assert_eq!(error("pixel:window=3").to_string(), "`pixel` has no parameter `window`; it has none");
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use calibench_diagnostics::Problem;
 use calibench_measure::coverage::{all_busy, cover, distinct, unmeasured};
 use calibench_measure::registry::KINDS;
-use calibench_measure::{BoardFinder, Configured, Kinds, KindsError, KindsGap, MethodError, Registry};
+use calibench_measure::{BoardFinder, Configured, Kinds, KindsError, KindsGap, MethodError, Registry, Setting};
 use calibench_model::TargetKind;
 use toml::Spanned;
 use toml::de::DeValue;
@@ -102,14 +102,15 @@ fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Prob
     let unknown = |key: &str| !known_keys.is_empty() && !known_keys.iter().any(|p| p.name == key);
     for (key, value) in &section.table {
         if unknown(key.get_ref()) {
-            given.push((key.get_ref().to_string(), 0.0));
+            given.push((key.get_ref().to_string(), Setting::Number(0.0)));
             continue;
         }
-        match number(value.get_ref()) {
-            Some(number) => given.push((key.get_ref().to_string(), number)),
+        let name_or_number = || value.get_ref().as_str().map(|name| Setting::Name(name.to_owned()));
+        match number(value.get_ref()).map(Setting::Number).or_else(name_or_number) {
+            Some(setting) => given.push((key.get_ref().to_string(), setting)),
             None => {
                 let found = value.get_ref().type_str();
-                problems.push(Problem::new(value.span(), format!("`{}` of `{name}` is a number, found {found}", key.get_ref())));
+                problems.push(Problem::new(value.span(), format!("`{}` of `{name}` is a number or a name, found {found}", key.get_ref())));
                 return None;
             }
         }

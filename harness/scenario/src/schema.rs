@@ -206,6 +206,11 @@ fn method(method: &calibench_measure::Method) -> Value {
         if let Domain::Choice(choices) = parameter.domain {
             schema["enum"] = json!(choices);
         }
+        if let Domain::Named(names) = parameter.domain {
+            // Numbers were written before there were names.
+            let values: Vec<Value> = names.iter().map(|name| json!(name)).chain((0..names.len()).map(|place| json!(place))).collect();
+            schema = json!({ "description": parameter.about, "enum": values, "default": parameter.domain.setting(parameter.default).to_string() });
+        }
         properties.insert(parameter.name.into(), schema);
     }
     json!({ "type": "object", "description": method.about, "properties": properties, "required": ["name"], "additionalProperties": false })

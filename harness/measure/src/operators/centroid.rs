@@ -22,8 +22,12 @@ pub struct Centroid {
 
 const WINDOW: Parameter = Parameter::odd("window", "side of the window, px", [3, 101], 21.0).always_shown();
 const THRESHOLD: Parameter = Parameter::real("threshold", "threshold, as a fraction of full scale; 0 for Otsu's", [0.0, 1.0], 0.0);
-const POLARITY: Parameter =
-    Parameter::whole("polarity", "0: the target is what most of the window's border is not; 1: it is dark; 2: it is light", [0, 2], 0.0);
+const POLARITY: Parameter = Parameter::named(
+    "polarity",
+    "the target is what most of the window's border is not, or it is dark or light",
+    &["border", "dark", "light"],
+    0,
+);
 const fn enlarge(default: f64) -> Parameter {
     Parameter::whole("enlarge", "how many times the window is enlarged before the threshold", [1, 4], default)
 }

@@ -30,8 +30,8 @@ pub struct ChessCorners {
 }
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::whole("detector", "0: ChESS; 1: Radon", [0, 1], 0.0),
-    Parameter::whole("refiner", "0: the detector's own position; 1: the crate's saddle point", [0, 1], 1.0),
+    Parameter::named("detector", "ChESS or Radon", &["chess", "radon"], 0),
+    Parameter::named("refiner", "the detector's own position, or the crate's saddle point", &["own", "saddle"], 1),
     Parameter::real("radius", "how far a detection may be from the start, px", [0.5, 30.0], 5.0),
 ];
 

@@ -7,12 +7,12 @@ use crate::registry::{Build, Method};
 pub const ALL: [fn(Build, String) -> Method; 4] = [chessboard, charuco, aprilgrid, circles];
 
 const SB: &[Parameter] =
-    &[Parameter::whole("sb", "0: findChessboardCorners, without cornerSubPix after it; 1: findChessboardCornersSB", [0, 1], 0.0)];
+    &[Parameter::flag("sb", "findChessboardCornersSB in place of findChessboardCorners, without cornerSubPix after it")];
 
-const CORRECTED: Parameter = Parameter::whole("corrected", "1: what is known of its origin of the pixel is taken out", [0, 1], 0.0);
+const CORRECTED: Parameter = Parameter::flag("corrected", "what is known of its origin of the pixel is taken out");
 
 const REFINED: &[Parameter] =
-    &[Parameter::whole("refinement", "cornerRefinementMethod: 0 none, 1 subpix, 2 contour, 3 apriltag", [0, 3], 0.0), CORRECTED];
+    &[Parameter::named("refinement", "cornerRefinementMethod", &["none", "subpix", "contour", "apriltag"], 0), CORRECTED];
 
 /// OpenCV's chessboards.
 pub fn chessboard(build: Build, version: String) -> Method {

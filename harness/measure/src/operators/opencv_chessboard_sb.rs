@@ -3,11 +3,6 @@
 use crate::parameter::Parameter;
 use crate::registry::{Build, Method};
 
-/// A flag of OpenCV, off as in OpenCV.
-const fn flag(name: &'static str, about: &'static str) -> Parameter {
-    Parameter::whole(name, about, [0, 1], 0.0)
-}
-
 const fn side(name: &'static str, about: &'static str, default: f64) -> Parameter {
     Parameter::whole(name, about, [3, 100], default).always_shown()
 }
@@ -15,9 +10,9 @@ const fn side(name: &'static str, about: &'static str, default: f64) -> Paramete
 const PARAMETERS: &[Parameter] = &[
     side("columns", "inner corners in a row of the board", 9.0),
     side("rows", "rows of inner corners of the board", 6.0),
-    flag("accuracy", "1: CALIB_CB_ACCURACY, the image is enlarged"),
-    flag("exhaustive", "1: CALIB_CB_EXHAUSTIVE, the search tries more"),
-    flag("normalize", "1: CALIB_CB_NORMALIZE_IMAGE, grey values are equalised first"),
+    Parameter::flag("accuracy", "CALIB_CB_ACCURACY, the image is enlarged"),
+    Parameter::flag("exhaustive", "CALIB_CB_EXHAUSTIVE, the search tries more"),
+    Parameter::flag("normalize", "CALIB_CB_NORMALIZE_IMAGE, grey values are equalised first"),
     Parameter::real("radius", "how far a corner of the board may be from the start, px", [0.5, 30.0], 5.0),
 ];
 

@@ -64,7 +64,7 @@ fn matching(image: &Image, starts: &[Start]) {
     let (squares, targets) = squares();
     let registry = calibench_opencv::registry();
     println!("\nLeast-squares matching of squares of {SIDE} px, blur 0.7 px, starts within about 1 px, window 15x15, one thread:");
-    for text in ["lsm:window=15,sigma=0.7,sharpness=0", "lsm:window=15,sigma=0.7"] {
+    for text in ["lsm:window=15,sigma=0.7,sharpness=held", "lsm:window=15,sigma=0.7"] {
         let Some(lsm) = registry.parse(text).ok().and_then(|configured| configured.operator.ok()) else { continue };
         let theirs = || drop(black_box(corner_sub_pix(image, starts, 7, 40, 1e-3)));
         let (a, b) = beside(|| drop(black_box(lsm.measure_all(&squares, &targets))), theirs);

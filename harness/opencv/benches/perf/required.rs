@@ -109,7 +109,7 @@ fn points(image: &Image, starts: &[Start]) {
         ("Förstner 11x11 / cornerSubPix 11x11, 1 iteration", "forstner:window=11", (image, starts), Some(&once), 2.0),
         (
             "LSM, eight parameters / cornerSubPix, 40 iterations",
-            "lsm:window=15,sigma=0.7,sharpness=0",
+            "lsm:window=15,sigma=0.7,sharpness=held",
             (&squares, &targets),
             Some(&large),
             1.0,

@@ -139,7 +139,7 @@ impl BoardFinder for CharucoCorners {
         let version = crate::version();
         let note = || {
             format!(
-                "OpenCV {version} has ChArUco corners half a pixel to the right and below (opencv/opencv_contrib#3024); `corrected = 1` takes that out"
+                "OpenCV {version} has ChArUco corners half a pixel to the right and below (opencv/opencv_contrib#3024); `corrected = \"yes\"` takes that out"
             )
         };
         (!self.corrected).then(note).into_iter().collect()
@@ -202,10 +202,10 @@ impl BoardFinder for TagCorners {
     fn notes(&self) -> Vec<String> {
         let note = match self.refinement {
             CORNER_REFINE_NONE | CORNER_REFINE_CONTOUR => {
-                "it has the corners of tags that touch squares up to 2 px inside in x and in y; `refinement = 1` mends that".to_owned()
+                "it has the corners of tags that touch squares up to 2 px inside in x and in y; `refinement = \"subpix\"` mends that".to_owned()
             }
             CORNER_REFINE_APRILTAG if !self.corrected => {
-                "its refinement `apriltag` has corners half a pixel to the right and below; `corrected = 1` takes that out".to_owned()
+                "its refinement `apriltag` has corners half a pixel to the right and below; `corrected = \"yes\"` takes that out".to_owned()
             }
             _ => return Vec::new(),
         };

@@ -65,7 +65,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::odd("window", "side of the window, px", [3, 31], 11.0).always_shown(),
     Parameter::whole("iterations", "most passes; from 2 on the window follows the result", [1, 100], 1.0),
     Parameter::real("gauss", "standard deviation of Gaussian weights, px; 0 for equal weights", [0.0, 31.0], 0.0),
-    Parameter::whole("covariance", "0: from the scatter of the edge lines; 1: from the noise of the grey values", [0, 1], 0.0),
+    Parameter::named("covariance", "from the scatter of the edge lines, or from the noise of the grey values", &["scatter", "noise"], 0),
     Parameter::real(
         "noise",
         "standard deviation of the noise for covariance=1, as a fraction of full scale; 0 to estimate it",

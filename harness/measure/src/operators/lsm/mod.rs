@@ -57,18 +57,21 @@ pub struct Lsm {
     misfit: f64,
 }
 
+/// The kinds of targets, in their order, after what the start says.
+const SHAPES: &[&str] = &["start", "corner", "chess_corner", "junction", "cross", "disc", "square", "triangle"];
+
 const PARAMETERS: &[Parameter] = &[
     Parameter::odd("window", "side of the window, px", [5, 47], 15.0).always_shown(),
-    Parameter::whole(
-        "shape",
-        "what is pictured: 0 as the start says, or else 1 corner, 2 chess corner, 4 cross, 5 disc, 6 square, 7 triangle",
-        [0, 7],
-        0.0,
-    ),
+    Parameter::named("shape", "what is pictured, or start: as the start says", SHAPES, 0),
     Parameter::real("size", "size of the target where the start gives no affine map, px; 0 to take it from the image", [0.0, 100.0], 0.0),
     Parameter::real("sigma", "standard deviation of the Gaussian blur, px; where it is sought, its start", [0.2, 4.0], 0.7),
-    Parameter::whole("sharpness", "is the blur sought, too? 0 no, 1 yes", [0, 1], 1.0),
-    Parameter::whole("neighbours", "what stands beside a closed target: 0 counts with the window, 1 is left out", [0, 1], 1.0),
+    Parameter::named("sharpness", "whether the blur is held or sought, too", &["held", "sought"], 1),
+    Parameter::named(
+        "neighbours",
+        "whether what stands beside a closed target is counted with the window or left out",
+        &["counted", "left_out"],
+        1,
+    ),
     Parameter::whole("iterations", "most steps", [1, 100], 30.0),
     Parameter {
         name: "epsilon",

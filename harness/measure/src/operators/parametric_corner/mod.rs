@@ -82,14 +82,14 @@ pub struct ParametricCorner {
 const PARAMETERS: &[Parameter] = &[
     Parameter::odd("window", "side of the window, px", [7, window::WIDEST as u32], 15.0).always_shown(),
     Parameter::whole("search", "the corner is sought within so many px of the start, along each axis", [0, 12], 5.0),
-    Parameter::whole(
+    Parameter::named(
         "gradient",
-        "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of the dark and of the \
-                light grey value, each its own",
-        [0, 3],
-        0.0,
+        "a linear change over the window is estimated: none, added to the grey values, of the light, which multiplies them, or of both the dark and the light grey \
+         value, each its own",
+        &["none", "added", "light", "both"],
+        0,
     ),
-    Parameter::whole("curvature", "1: a curvature of each edge is estimated, 0: edges are straight", [0, 1], 0.0),
+    Parameter::flag("curvature", "a curvature of each edge is estimated; else edges are straight"),
     Parameter::real("photosite", "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel", [0.1, 1.0], 1.0),
 ];
 

@@ -63,12 +63,12 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::odd("window", "side of the window, px", [9, 41], 15.0).always_shown(),
     Parameter::choice("arms", "edges that leave the point; 4: two straight ones that cross; 0: chosen by the data", &[0, 2, 3, 4], 0.0),
     Parameter::whole("search", "the point is sought within so many px of the start, along each axis", [0, 12], 5.0),
-    Parameter::whole(
+    Parameter::named(
         "gradient",
-        "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of each sector's grey \
-                value, each its own",
-        [0, 3],
-        0.0,
+        "a linear change over the window is estimated: none, added to the grey values, of the light, which multiplies them, or of each sector's grey value, each \
+         its own",
+        &["none", "added", "light", "sectors"],
+        0,
     ),
     Parameter::real("photosite", "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel", [0.1, 1.0], 1.0),
     Parameter::real(
