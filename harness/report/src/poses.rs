@@ -132,7 +132,7 @@ fn legend(canvas: &mut Canvas, (left, top): (i32, i32)) {
 
 #[cfg(test)]
 mod tests {
-    use calibench_records::description::{Station, Target};
+    use calibench_records::description::{Station, Study, Target};
 
     use super::*;
 
@@ -147,8 +147,7 @@ mod tests {
             normal: Some([0.0, 0.0, 1.0]),
             stations: [[300.0, 0.0, 600.0], [-400.0, 200.0, 700.0], [0.0, -300.0, 500.0]].map(station).into(),
             targets: vec![corner(-90.0, -60.0), corner(90.0, -60.0), corner(0.0, 60.0)],
-            adjustment: None,
-            blocks: None,
+            study: Study::Points,
             room: None,
         }
     }

@@ -1,6 +1,5 @@
 //! Scenarios to results: truth-blind measuring, scored against the truth at the end.
 
-pub mod blocks;
 mod bounded;
 mod bounding;
 mod bounds;
@@ -10,7 +9,6 @@ mod error;
 pub mod judgement;
 mod made;
 mod measured;
-pub mod network;
 mod order;
 pub mod origin;
 pub mod parts;
@@ -18,17 +16,15 @@ mod photographs;
 mod plan;
 mod planned;
 pub mod prepared;
-pub mod printed;
-pub mod recognition;
 pub mod reuse;
 mod rmse;
 mod scene;
 pub mod shots;
 pub mod store;
+pub mod studies;
 mod tally;
 mod theory;
 mod tools;
-pub mod transfer;
 mod trials;
 pub mod truth;
 mod viewed;

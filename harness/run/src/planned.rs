@@ -1,7 +1,7 @@
 //! How an order is run, and where it goes.
 
 use calibench_measure::Configured;
-use calibench_scenario::{Subject, no_board};
+use calibench_scenario::no_board;
 
 use crate::parts::{self, Done, Wanted};
 use crate::store::{self, RecordsFolder, SweepPlan};
@@ -79,11 +79,7 @@ impl<'a> Order<'a> {
 
     /// Calibrations that are applied, and printed figures, are a scenario's own: none of the methods that measure takes their place.
     fn own_methods(&self) -> Result<(), RunError> {
-        let own = match &self.scenario.subject {
-            Subject::Views(views) => views.transfer.is_some(),
-            subject => matches!(subject, Subject::Printed(_)),
-        };
-        if !own || self.methods.is_empty() {
+        if self.scenario.subject.is_measured() || self.methods.is_empty() {
             return Ok(());
         }
         let name = &self.scenario.name;

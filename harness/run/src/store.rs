@@ -173,7 +173,7 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
     let mut records = RecordWriter::new(table(folder, Table::Points)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
     let (mut calibrations, mut measured) = (calibrations(folder, name, plan, revision)?, 0);
-    let adjusted_alone = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
+    let adjusted_alone = !plan.scenario.subject.is_measured();
     if adjusted_alone {
         records.adjusted_alone().map_err(io::Error::other)?;
     }

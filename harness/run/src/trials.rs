@@ -4,13 +4,14 @@ use calibench_measure::coverage::cover;
 use calibench_random::Key;
 use calibench_records::parts::Span;
 use calibench_records::results::{Calibrated, Trial};
-use calibench_scenario::{PhotographsSubject, Printed, Subject};
+use calibench_scenario::{PhotographsSubject, Printed, Study, Subject};
 use rayon::prelude::*;
 
 use super::bounding::Bounding;
 use super::made::Made;
-use super::transfer::Campaign;
-use super::{Plan, RunError, photographs, printed, scene, views};
+use super::studies::printed;
+use super::studies::transfer::Campaign;
+use super::{Plan, RunError, photographs, scene, views};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 pub(crate) const BATCH: u64 = 32;
@@ -96,9 +97,9 @@ impl Plan<'_> {
             Subject::Photographs(subject) => Work::Photographs(subject),
             Subject::Printed(printed) => Work::Printed(printed),
             Subject::Scene(subject) => Work::Scene(Box::new(scene::Prepared::new(self, subject)?)),
-            Subject::Views(subject) => match &subject.transfer {
-                Some(transfer) => Work::Transfer(Box::new(Campaign::new(subject, transfer, self.tools)?)),
-                None => Work::Views(Box::new(views::Trials::new(self, subject)?)),
+            Subject::Views(subject) => match &subject.study {
+                Study::Transfer { plan, board } => Work::Transfer(Box::new(Campaign::new(subject, plan, board.as_deref(), self.tools)?)),
+                Study::Points | Study::Network(_) | Study::Blocks(_) => Work::Views(Box::new(views::Trials::new(self, subject)?)),
             },
         })
     }

@@ -1,6 +1,7 @@
 //! A scenario as its pages tell it: what a report needs of it, beside the records of its run.
 
 mod printed;
+mod study;
 mod sweep;
 mod views;
 
@@ -10,8 +11,9 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
+pub use study::{Adjustment, Blocks, Study};
 pub use sweep::{Axis, Cell, Sweep, Value};
-pub use views::{Adjustment, Blocks, Role, Room, Station, Target, Views};
+pub use views::{Role, Room, Station, Target, Views};
 
 /// A scenario: its words, what was to be run, and what its pages draw. That of a sweep is of its first cell but for the sweep itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,13 +73,13 @@ impl Description {
     /// The views of an adjusted scenario and what its adjustment is told.
     pub fn adjusted(&self) -> Option<(&Views, &Adjustment)> {
         let Subject::Views(views) = &self.subject else { return None };
-        Some((views, views.adjustment.as_ref()?))
+        if let Study::Network(told) = &views.study { Some((views, told)) } else { None }
     }
 
     /// The views of a scenario with free networks and what these are told.
     pub fn in_blocks(&self) -> Option<(&Views, &Blocks)> {
         let Subject::Views(views) = &self.subject else { return None };
-        Some((views, views.blocks.as_ref()?))
+        if let Study::Blocks(told) = &views.study { Some((views, told)) } else { None }
     }
 
     /// Whether the method of `label` measures points from starts, as those do that are compared with each other: it neither returns its start nor finds the board by itself.
@@ -127,23 +129,8 @@ pub fn read(input: impl Read) -> Result<Description, serde_json::Error> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn what_is_written_is_read_again_to_the_last_bit() {
-        let station = Station { name: "1".into(), centre: [0.1 + 0.2, -1.0 / 3.0, 1e-17], sight: [0.0, 5e-324, -1.0], second_step: true };
-        let target =
-            Target { id: "a".into(), kind: "cross".into(), surveyed: [123.456_789_012_345_67, 2.0, 1e300], role: Some(Role::Control) };
-        let views = Views {
-            size: [4000, 3000],
-            unit: "m".into(),
-            extent: Some([[-1.0; 3], [1.0; 3]]),
-            normal: None,
-            stations: vec![station],
-            targets: vec![target],
-            adjustment: Some(Adjustment { pitch_um: 3.9, drawn: true }),
-            blocks: Some(Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }),
-            room: Some(Room { least: 0.1 + 0.2, middle: 1.0 / 3.0 }),
-        };
-        let description = Description {
+    fn described(subject: Subject) -> Description {
+        Description {
             why: "To see \"this\".\n".into(),
             source: "a test".into(),
             notes: vec!["$x$".into()],
@@ -154,50 +141,70 @@ mod tests {
             finders: Vec::new(),
             methods: vec!["forstner:window=15".into()],
             defaults: [("forstner".into(), "forstner:window=11".into())].into(),
-            subject: Subject::Views(Box::new(views)),
+            subject,
             sweep: None,
-        };
-        let mut text = Vec::new();
-        write(&mut text, &description).unwrap();
-        assert_eq!(read(&text[..]).unwrap(), description);
+        }
+    }
+
+    fn views(role: Option<Role>, study: Study) -> Views {
+        let station = Station { name: "1".into(), centre: [0.1 + 0.2, -1.0 / 3.0, 1e-17], sight: [0.0, 5e-324, -1.0], second_step: true };
+        Views {
+            size: [4000, 3000],
+            unit: "m".into(),
+            extent: Some([[-1.0; 3], [1.0; 3]]),
+            normal: None,
+            stations: vec![station],
+            targets: vec![Target { id: "a".into(), kind: "cross".into(), surveyed: [123.456_789_012_345_67, 2.0, 1e300], role }],
+            study,
+            room: Some(Room { least: 0.1 + 0.2, middle: 1.0 / 3.0 }),
+        }
+    }
+
+    const TOLD: Adjustment = Adjustment { pitch_um: 3.9, drawn: true };
+
+    fn blocks() -> Blocks {
+        Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_to_the_last_bit() {
+        let (control, check) = (Some(Role::Control), Some(Role::Check));
+        for (role, study) in
+            [(None, Study::Points), (control, Study::Network(TOLD)), (None, Study::Blocks(blocks())), (check, Study::Transfer)]
+        {
+            let description = described(Subject::Views(Box::new(views(role, study))));
+            let mut text = Vec::new();
+            write(&mut text, &description).unwrap();
+            assert_eq!(read(&text[..]).unwrap(), description);
+        }
+        let description = described(Subject::Scene);
         assert!(
             description.is_default("forstner:window=11") && !description.is_default("forstner:window=15") && !description.is_default("x")
         );
         assert!(read(&b"{}"[..]).is_err());
     }
 
+    /// The keys of files have been the same since there was one study alone.
+    #[test]
+    fn a_file_tells_a_study_by_its_key_and_has_one_at_most() {
+        let file = |study| serde_json::to_value(views(None, study)).unwrap();
+        let (plain, network, blocks) = (file(Study::Points), file(Study::Network(TOLD)), file(Study::Blocks(blocks())));
+        assert!(plain["adjustment"].is_null() && plain["blocks"].is_null() && plain.get("study").is_none());
+        assert!(network["adjustment"]["pitch_um"] == 3.9 && network["blocks"].is_null());
+        let mut both = network;
+        both["blocks"] = blocks["blocks"].clone();
+        let error = serde_json::from_value::<Views>(both).unwrap_err().to_string();
+        assert!(error.contains("`blocks` beside `adjustment`"), "{error}");
+    }
+
     #[test]
     fn an_adjusted_scenario_has_views_and_an_adjustment() {
-        let views = |adjustment| Views {
-            size: [4, 3],
-            unit: "mm".into(),
-            extent: None,
-            normal: None,
-            stations: Vec::new(),
-            targets: Vec::new(),
-            adjustment,
-            blocks: None,
-            room: None,
-        };
-        let of = |subject| Description {
-            why: String::new(),
-            source: String::new(),
-            notes: Vec::new(),
-            seed: 1,
-            trials: 1,
-            bound_window: 11,
-            bound_window_discs: None,
-            finders: Vec::new(),
-            methods: Vec::new(),
-            defaults: BTreeMap::new(),
-            subject,
-            sweep: None,
-        };
-        let adjustment = Adjustment { pitch_um: 3.9, drawn: false };
-        let adjusted = of(Subject::Views(Box::new(views(Some(adjustment)))));
-        assert_eq!(adjusted.adjusted(), Some((&views(Some(adjustment)), &adjustment)));
-        for subject in [Subject::Scene, Subject::Photographs { judged: true }, Subject::Views(Box::new(views(None)))] {
-            assert_eq!(of(subject).adjusted(), None);
+        let of = |study| described(Subject::Views(Box::new(views(None, study))));
+        assert_eq!(of(Study::Network(TOLD)).adjusted(), Some((&views(None, Study::Network(TOLD)), &TOLD)));
+        assert_eq!(of(Study::Blocks(blocks())).in_blocks().map(|(_, told)| told), Some(&blocks()));
+        let others = [Subject::Scene, Subject::Photographs { judged: true }].map(described);
+        for description in others.into_iter().chain([of(Study::Points), of(Study::Transfer)]) {
+            assert!(description.adjusted().is_none() && description.in_blocks().is_none());
         }
     }
 
