@@ -27,6 +27,7 @@ pub(crate) mod markdown;
 mod one_file;
 pub mod orientation;
 mod page;
+mod papers;
 mod photographs;
 mod places;
 mod poses;
