@@ -26,11 +26,11 @@ pub fn told_notes<'m>(told: impl IntoIterator<Item = (&'m str, Told)>) -> impl I
 /// The description of `scenario`, which `methods` were run on, its own or others; but for what these tell ([`told_notes`]).
 pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     let default = |method: &Configured| (operator(&method.label).to_owned(), method.default_label.clone());
-    let subject = match &scenario.subject {
-        Subject::Scene(_) => description::Subject::Scene,
-        Subject::Views(subject) => description::Subject::Views(Box::new(views(subject))),
-        Subject::Printed(printed) => description::Subject::Printed(Box::new(of_print(printed))),
-        Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
+    let study = match &scenario.subject {
+        Subject::Scene(_) => description::Study::Scene,
+        Subject::Views(subject) => of_views(subject),
+        Subject::Printed(printed) => description::Study::Printed(Box::new(of_print(printed))),
+        Subject::Photographs(subject) => description::Study::Photographs { judged: subject.judgement.is_some() },
     };
     Description {
         why: scenario.why.clone(),
@@ -43,7 +43,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         methods: labels(scenario),
         finders: finders(scenario.methods.iter().chain(methods)),
         defaults: scenario.methods.iter().chain(methods).map(default).collect(),
-        subject,
+        study,
         sweep: scenario.sweep.as_ref().map(sweep),
     }
 }
@@ -113,6 +113,19 @@ fn sweep(sweep: &Sweep) -> description::Sweep {
     description::Sweep { axes: sweep.axes.iter().map(axis).collect(), cells: (0..sweep.cells()).map(cell).collect() }
 }
 
+fn of_views(subject: &ViewsSubject) -> description::Study {
+    let views = Box::new(views(subject));
+    match &subject.study {
+        Study::Points => description::Study::Views(views),
+        Study::Network(plan) => {
+            let told = Adjustment { pitch_um: plan.start.pitch_um, drawn: plan.drawn.is_some() };
+            description::Study::Network(views, told)
+        }
+        Study::Blocks(plan) => description::Study::Blocks(views, in_blocks(subject, plan)),
+        Study::Transfer { .. } => description::Study::Transfer(views),
+    }
+}
+
 fn views(subject: &ViewsSubject) -> Views {
     let check = subject.study.network().and_then(|calibration| calibration.check.as_ref());
     let size = subject.camera.size();
@@ -123,12 +136,6 @@ fn views(subject: &ViewsSubject) -> Views {
         normal: subject.field.plates.first().map(|plate| plate.normal().into()),
         stations: stations(subject, check),
         targets: targets(subject, check),
-        study: match &subject.study {
-            Study::Points => description::Study::Points,
-            Study::Network(plan) => description::Study::Network(Adjustment { pitch_um: plan.start.pitch_um, drawn: plan.drawn.is_some() }),
-            Study::Blocks(plan) => description::Study::Blocks(in_blocks(subject, plan)),
-            Study::Transfer { .. } => description::Study::Transfer,
-        },
         room: room(subject),
     }
 }

@@ -2,11 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::study::{Adjustment, Blocks, Study};
-
 /// A testfield and its stations: those of the first trial where they change. Object space is right-handed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Written", into = "Written")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Views {
     /// Columns and rows of an image, px.
     pub size: [u32; 2],
@@ -20,55 +17,8 @@ pub struct Views {
     pub stations: Vec<Station>,
     /// In the order of the testfield.
     pub targets: Vec<Target>,
-    /// What is made of the measured points.
-    pub study: Study,
     /// How much room a target has before something else begins, where that is known.
     pub room: Option<Room>,
-}
-
-/// [`Views`] as files have them.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Written {
-    size: [u32; 2],
-    unit: String,
-    extent: Option<[[f64; 3]; 2]>,
-    normal: Option<[f64; 3]>,
-    stations: Vec<Station>,
-    targets: Vec<Target>,
-    adjustment: Option<Adjustment>,
-    blocks: Option<Blocks>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    room: Option<Room>,
-}
-
-impl TryFrom<Written> for Views {
-    type Error = &'static str;
-
-    fn try_from(written: Written) -> Result<Self, Self::Error> {
-        let Written { size, unit, extent, normal, stations, targets, adjustment, blocks, room } = written;
-        let study = match (adjustment, blocks) {
-            (Some(_), Some(_)) => return Err("`blocks` beside `adjustment`: expected one of them"),
-            (Some(told), None) => Study::Network(told),
-            (None, Some(told)) => Study::Blocks(told),
-            // Where nothing is adjusted only calibrations that come from elsewhere have control and check points.
-            (None, None) if targets.iter().any(|target| target.role.is_some()) => Study::Transfer,
-            (None, None) => Study::Points,
-        };
-        Ok(Self { size, unit, extent, normal, stations, targets, study, room })
-    }
-}
-
-impl From<Views> for Written {
-    fn from(views: Views) -> Self {
-        let Views { size, unit, extent, normal, stations, targets, study, room } = views;
-        let (adjustment, blocks) = match study {
-            Study::Network(told) => (Some(told), None),
-            Study::Blocks(told) => (None, Some(told)),
-            Study::Points | Study::Transfer => (None, None),
-        };
-        Self { size, unit, extent, normal, stations, targets, adjustment, blocks, room }
-    }
 }
 
 /// The half sides of the largest upright windows around targets in view that hold nothing else, px.

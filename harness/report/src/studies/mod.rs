@@ -11,22 +11,19 @@ mod section;
 mod shown;
 mod transfer;
 
-use calibench_records::description::{Description, Study, Subject};
+use calibench_records::description::{Description, Study};
 
 pub use section::Section;
 pub use shown::{OnPage, Shown};
 
 /// The study of a scenario. A new one is a line here.
 pub fn of(scenario: &Description) -> &'static dyn Section {
-    match &scenario.subject {
-        Subject::Scene => &points::Points,
-        Subject::Photographs { .. } => &photographs::Photographs,
-        Subject::Printed(_) => &printed::Printed,
-        Subject::Views(views) => match views.study {
-            Study::Points => &points::Points,
-            Study::Network(_) => &network::Network,
-            Study::Blocks(_) => &blocks::Blocks,
-            Study::Transfer => &transfer::Transfer,
-        },
+    match &scenario.study {
+        Study::Scene | Study::Views(_) => &points::Points,
+        Study::Network(..) => &network::Network,
+        Study::Blocks(..) => &blocks::Blocks,
+        Study::Transfer(_) => &transfer::Transfer,
+        Study::Photographs { .. } => &photographs::Photographs,
+        Study::Printed(_) => &printed::Printed,
     }
 }

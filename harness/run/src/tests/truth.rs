@@ -73,7 +73,7 @@ fn the_room_of_a_board_is_the_drawing_on_paper() {
         assert!(found.iter().all(|row| (number(row, "room_px") - expected).abs() < 1e-6), "{expected} {:?}", found[0]);
     }
     // All are in view, so that the middle one of both rolls is the larger.
-    let description::Subject::Views(told) = crate::description::description(&scenario, &[]).subject else { panic!() };
+    let description::Study::Views(told) = crate::description::description(&scenario, &[]).study else { panic!() };
     let room = told.room.unwrap();
     assert!((room.least - expected[1]).abs() < 1e-6 && (room.middle - expected[0]).abs() < 1e-6, "{room:?}");
 }

@@ -8,7 +8,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use calibench_records::description::Subject;
+use calibench_records::description::Study;
 
 use super::section::Section;
 use super::shown::{OnPage, Shown};
@@ -19,7 +19,7 @@ pub struct Printed;
 
 impl Section for Printed {
     fn of(&self, loaded: &Loaded, on: OnPage<'_>) -> Shown {
-        let Subject::Printed(sets) = &loaded.scenario.subject else { return Shown::default() };
+        let Study::Printed(sets) = &loaded.scenario.study else { return Shown::default() };
         section::section(loaded, sets, on.stem).into()
     }
 }

@@ -2,7 +2,7 @@
 
 use calibench_model::Pose;
 use calibench_model::convert::ConvertError;
-use calibench_records::description::{PlacedNetwork, Printed, Role, Station, Study, Target, Views};
+use calibench_records::description::{PlacedNetwork, Printed, Role, Station, Target, Views};
 use calibench_records::figures::Quantity;
 use nalgebra::Point3;
 
@@ -126,7 +126,6 @@ pub(super) fn views(printed: &Printed, network: &PlacedNetwork, found: &Summarie
         normal: Some(network.from),
         stations: (1..).map_while(station).collect(),
         targets: printed.points.iter().map(target).collect(),
-        study: Study::Points,
         room: None,
     }
 }

@@ -1,7 +1,5 @@
 //! The section of a scenario whose calibrations are applied elsewhere.
 
-use calibench_records::description::Subject;
-
 use super::check_points::has_check_points;
 use super::{cases, decomposition, errors};
 use crate::canvas::Pictures;
@@ -15,9 +13,7 @@ pub fn section(loaded: &Loaded, OnPage { stem, .. }: OnPage<'_>) -> Option<(Stri
     let mut text = cases::table(found);
     text.push_str(&decomposition::tables(found));
     let mut pictures: Pictures = Vec::new();
-    if let Subject::Views(views) = &loaded.scenario.subject
-        && let Some(canvas) = plan(views)
-    {
+    if let Some(canvas) = loaded.scenario.study.views().and_then(plan) {
         let file = format!("{stem}-plan.png");
         text.push_str(&format!(
             "Where calibrations are applied: stations, control and check points:\n\n![Stations, control and check points]({file})\n\n"
