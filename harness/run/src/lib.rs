@@ -13,8 +13,8 @@ mod order;
 pub mod origin;
 pub mod parts;
 mod photographs;
+mod place;
 mod plan;
-mod planned;
 pub mod prepared;
 pub mod reuse;
 mod rmse;
@@ -32,8 +32,8 @@ mod views;
 
 pub use error::RunError;
 pub use order::Order;
+pub use place::{Place, Ran};
 pub use plan::Plan;
-pub use planned::{Place, Planned, Ran};
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
 pub use tools::Tools;
 

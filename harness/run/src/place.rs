@@ -1,19 +1,10 @@
 //! How an order is run, and where it goes.
 
-use calibench_measure::Configured;
-use calibench_scenario::no_board;
+use calibench_scenario::{Sweep, no_board};
 
 use crate::parts::{self, Done, Wanted};
 use crate::store::{self, RecordsFolder, SweepPlan};
 use crate::{Order, Plan, RunError};
-
-/// How it is run.
-pub enum Planned<'a> {
-    /// A scenario by itself.
-    One(Box<Plan<'a>>),
-    /// A scenario that is swept.
-    Sweep(SweepPlan<'a>),
-}
 
 /// Where what is run goes.
 pub enum Place<'a> {
@@ -32,14 +23,17 @@ pub enum Ran {
 }
 
 impl<'a> Order<'a> {
-    /// How it is run.
+    /// Whether it can be run.
     ///
     /// # Errors
     /// [`RunError::Asked`]: methods in a scenario whose methods are its own, several trials where nothing is random, a file of positions in a sweep.
-    pub fn planned(self) -> Result<Planned<'a>, RunError> {
+    pub fn check(&self) -> Result<(), RunError> {
         self.own_methods()?;
-        let Some(sweep) = &self.scenario.sweep else { return Ok(Planned::One(Box::new(self.plan()?))) };
         let (scenario, methods) = (self.scenario, self.methods);
+        let Some(sweep) = &scenario.sweep else {
+            self.known_boards()?;
+            return self.random_trials();
+        };
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(RunError::Asked(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
@@ -49,7 +43,7 @@ impl<'a> Order<'a> {
                 "`{label}` is a file of positions, and `{name}` is a sweep, of which `render` makes the first cell alone; expected a scenario without [sweep]"
             )));
         }
-        Ok(Planned::Sweep(SweepPlan { order: self, sweep }))
+        Ok(())
     }
 
     /// Whether every method of the order that finds boards knows the board of a scenario that is not swept; of its own methods its file was checked.
@@ -66,14 +60,14 @@ impl<'a> Order<'a> {
         Ok(())
     }
 
-    fn plan(&self) -> Result<Plan<'a>, RunError> {
-        self.known_boards()?;
+    /// Whether trials that are asked for differ, of a scenario that is not swept.
+    fn random_trials(&self) -> Result<(), RunError> {
         match self.trials {
             Some(trials) if trials > 1 && self.scenario.is_deterministic() => Err(RunError::Asked(format!(
                 "--trials {trials}: nothing is random in `{}`, every trial would be the same; expected 1",
                 self.scenario.name
             ))),
-            asked => Ok(Plan { trials: asked.unwrap_or(self.scenario.trials), ..self.plan_of(self.scenario) }),
+            _ => Ok(()),
         }
     }
 
@@ -85,37 +79,39 @@ impl<'a> Order<'a> {
         let name = &self.scenario.name;
         Err(RunError::Asked(format!("-m: `{name}` measures nothing: its calibrations or printed figures are its own; leave out -m")))
     }
-}
 
-impl Planned<'_> {
+    /// How it is run; `None` of a sweep, whose cells have a plan each.
+    pub fn plan(&self) -> Option<Plan<'a>> {
+        self.scenario.sweep.is_none().then(|| self.single())
+    }
+
+    fn single(&self) -> Plan<'a> {
+        Plan { trials: self.trials.unwrap_or(self.scenario.trials), ..self.plan_of(self.scenario) }
+    }
+
     /// How many steps [`Self::run`] reports, about.
     pub fn steps(&self, place: &Place<'_>) -> u64 {
-        match (self, place) {
-            (Self::One(plan), Place::Records(_)) => plan.steps(),
-            (Self::One(plan), Place::Part(wanted)) => parts::trials(plan, wanted.part).count(),
-            (Self::Sweep(plan), Place::Records(_)) => plan.sweep.cells() as u64,
-            (Self::Sweep(plan), Place::Part(wanted)) => (plan.sweep.cells() as u64).div_ceil(wanted.part.of()),
+        let cells = self.scenario.sweep.as_ref().map_or(0, Sweep::cells) as u64;
+        match (self.plan(), place) {
+            (Some(plan), Place::Records(_)) => plan.steps(),
+            (Some(plan), Place::Part(wanted)) => parts::trials(&plan, wanted.part).count(),
+            (None, Place::Records(_)) => cells,
+            (None, Place::Part(wanted)) => cells.div_ceil(wanted.part.of()),
         }
     }
 
-    /// The methods that measure.
-    pub fn methods(&self) -> &[Configured] {
-        match self {
-            Self::One(plan) => plan.methods,
-            Self::Sweep(plan) => plan.order.measuring(),
-        }
-    }
-
-    /// Runs it; `step` is called after each step, on any thread.
+    /// Checks and runs it; `step` is called after each step, on any thread.
     ///
     /// # Errors
-    /// What the run or the file system refuses, or that it was stopped; what was there before is then as it was.
-    pub fn run(&mut self, place: &Place<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<Ran, RunError> {
-        Ok(match (self, place) {
-            (Self::One(plan), Place::Records(folder)) => Ran::Whole(store::run(folder, plan, revision, step)?),
-            (Self::One(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run(wanted, plan, step)?)),
-            (Self::Sweep(plan), Place::Records(folder)) => Ran::Whole(store::run_sweep(folder, plan, revision, step)?),
-            (Self::Sweep(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run_sweep(wanted, plan, step)?)),
+    /// As [`Self::check`]; what the run or the file system refuses, or that it was stopped; what was there before is then as it was.
+    pub fn run(&self, place: &Place<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<Ran, RunError> {
+        self.check()?;
+        let swept = self.scenario.sweep.as_ref().map(|sweep| SweepPlan { order: self, sweep });
+        Ok(match (swept, place) {
+            (Some(plan), Place::Records(folder)) => Ran::Whole(store::run_sweep(folder, &plan, revision, step)?),
+            (Some(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run_sweep(wanted, &plan, step)?)),
+            (None, Place::Records(folder)) => Ran::Whole(store::run(folder, &self.single(), revision, step)?),
+            (None, Place::Part(wanted)) => Ran::Part(Box::new(parts::run(wanted, &self.single(), step)?)),
         })
     }
 }
