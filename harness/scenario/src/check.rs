@@ -14,7 +14,7 @@ use super::methods::{check_boards, check_busy, check_kinds, methods, without_boa
 use super::section::Section;
 use super::site::Surroundings;
 use super::studies::printed;
-use super::study_tables::StudyTables;
+use super::study_tables::{self, StudyTables};
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::Head;
@@ -23,28 +23,27 @@ use super::{Drawn, Resolved, Scenario, Subject, figure, photographs, scene};
 /// Side of the bound's window where the file gives none, px.
 const BOUND_WINDOW: usize = 15;
 
-/// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 19] = [
-    "sweep",
-    "method",
-    "calibration",
-    "blocks",
-    "block",
-    "recognition",
-    "transfer",
-    "scene",
-    "figure",
-    "photographs",
-    "printed",
-    "judgement",
-    "camera",
-    "testfield",
-    "stations",
-    "station",
-    "optics",
-    "sensor",
-    "pointing",
-];
+/// The keys of the file's top level that are tables of their own, before those of studies and behind them.
+const TOP_TABLES: ([&str; 2], [&str; 14]) = (
+    ["sweep", "method"],
+    [
+        "recognition",
+        "transfer",
+        "scene",
+        "figure",
+        "photographs",
+        "printed",
+        "judgement",
+        "camera",
+        "testfield",
+        "stations",
+        "station",
+        "optics",
+        "sensor",
+        "pointing",
+    ],
+);
+
 /// Reads a scenario called `name` from the `text` of `file`, with the methods of `registry`.
 ///
 /// # Errors
@@ -175,7 +174,8 @@ fn read(
     let listed = listed.unwrap_or_default();
     let listed_at: Vec<_> = listed.iter().map(|section| section.span.clone()).collect();
     let methods = methods(listed, registry, problems);
-    let head: Option<Head> = root.read(&TOP_TABLES, problems);
+    let tables: Vec<&str> = TOP_TABLES.0.into_iter().chain(study_tables::keys()).chain(TOP_TABLES.1).collect();
+    let head: Option<Head> = root.read(&tables, problems);
     let key = |of| Key { seed: head.as_ref().map_or(0, |head| head.seed.0), of, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
     let others = [&scene, &figure, &photographs, &judged].into_iter().flatten().chain(studied.tables());

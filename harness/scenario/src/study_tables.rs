@@ -38,6 +38,12 @@ const READERS: [Reader; 2] = [
     },
 ];
 
+/// The keys of the top level that say what is made of points.
+pub fn keys() -> impl Iterator<Item = &'static str> {
+    let keys = |reader: &Reader| [Some(reader.table[0]), reader.list.map(|([key, _], _)| key)];
+    READERS.iter().flat_map(keys).flatten()
+}
+
 /// The tables as they stand in the file, not read yet.
 pub struct StudyTables<'i> {
     /// In the order of [`READERS`].
