@@ -11,6 +11,13 @@ mod section;
 mod shown;
 mod transfer;
 
+#[cfg(test)]
+mod tests;
+
+/// The worked example of CONTRIBUTING, linked from `examples/`.
+#[cfg(test)]
+mod example;
+
 use calibench_records::description::{Description, Study};
 
 pub use section::Section;

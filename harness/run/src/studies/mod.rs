@@ -7,6 +7,10 @@ pub mod printed;
 pub mod recognition;
 pub mod transfer;
 
+/// The worked example of CONTRIBUTING, linked from `examples/`.
+#[cfg(test)]
+pub(crate) mod example;
+
 use calibench_records::results::MethodInfo;
 use calibench_scenario::{Study, Subject};
 

@@ -11,6 +11,10 @@ pub mod recognition;
 mod seen;
 pub mod transfer;
 
+/// The worked example of CONTRIBUTING, linked from `examples/`.
+#[cfg(test)]
+mod example;
+
 pub(crate) use named::{filled, matched, places};
 pub use plan::StudyPlan;
 pub use points::Points;
