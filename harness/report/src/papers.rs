@@ -16,5 +16,8 @@ const OWN: [(&str, Own); 1] = [(zhu::FAMILY, zhu::section)];
 /// # Errors
 /// Records that cannot be read.
 pub fn section(family: &str, plain: &[&Loaded], swept: &[&LoadedSweep]) -> Result<(String, Pictures), LoadError> {
-    OWN.iter().find(|(of, _)| *of == family).map_or_else(|| Ok(Default::default()), |(_, own)| own(plain, swept))
+    match OWN.iter().find(|(of, _)| *of == family) {
+        Some((_, own)) => own(plain, swept),
+        None => Ok((String::new(), Pictures::new())),
+    }
 }
