@@ -6,6 +6,3 @@ pub struct Scale {
     /// The two targets, by their places in the field.
     pub between: [usize; 2],
 }
-
-/// The name under which its figure stands in the records.
-pub const SET: &str = "scale";

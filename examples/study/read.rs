@@ -5,9 +5,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::plan::{SET, Scale};
+use super::plan::Scale;
 use crate::section::Section;
 use crate::studies::{Seen, StudyPlan, places};
+
+/// The name under which its figure stands in the records.
+pub const SET: &str = "scale";
 
 /// The image scale along a line, of what each method measured in each trial.
 #[derive(Deserialize, JsonSchema)]

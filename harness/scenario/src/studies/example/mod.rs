@@ -56,7 +56,7 @@ fn read_scale(text: &str) -> Result<Scale, String> {
 #[test]
 fn the_example_reads_two_targets_and_says_what_is_wrong() {
     let scale = read_scale("between = [\"w/1\", \"w/3\"]").unwrap();
-    assert_eq!((scale, scale.sets(), scale.own_methods()), (Scale { between: [0, 2] }, vec![plan::SET.to_owned()], None));
+    assert_eq!((scale, scale.sets(), scale.own_methods()), (Scale { between: [0, 2] }, vec![read::SET.to_owned()], None));
     for (text, message) in [
         ("between = [\"w/1\"]", "`between` is a list of 1: expected two targets"),
         ("between = [\"w/1\", \"x\"]", "no target is called `x`"),
