@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::plan::Scale;
+use super::Scale;
 use crate::section::Section;
 use crate::studies::{Seen, StudyPlan, places};
 

@@ -8,7 +8,7 @@ use calibench_records::figures::Quantity;
 use calibench_records::results::{Calibrated, Figure, Outcome, PointResult};
 use calibench_scenario::ViewsSubject;
 
-use super::plan::Scale;
+use super::Scale;
 use crate::studies::adjust::Adjust;
 
 impl Adjust for Scale {

@@ -5,7 +5,7 @@ use calibench_records::results::find;
 
 use super::{EXACT, KEY, scenario, trials, views};
 use crate::studies::Adjust;
-use crate::studies::example::plan::Scale;
+use crate::studies::example::Scale;
 
 /// The camera of 2000 px per unit of slope looks from 6 m squarely at the wall.
 #[test]

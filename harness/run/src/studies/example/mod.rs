@@ -1,4 +1,6 @@
 //! The worked example of CONTRIBUTING, linked from `examples/`.
 
-pub mod plan;
+mod plan;
 mod run;
+
+pub use plan::Scale;
