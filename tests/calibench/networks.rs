@@ -10,7 +10,7 @@ use calibench_records::figures::Group;
 use calibench_records::results::Trial;
 use calibench_records::results::{Calibrated, Figure};
 use calibench_run::Plan;
-use calibench_run::network::{ImagePoint, Job, calibrate, observe};
+use calibench_run::studies::network::{ImagePoint, Job, calibrate, observe};
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 
 use crate::project::root;
@@ -58,7 +58,7 @@ fn figure<'a>(calibrated: &'a Calibrated, group: Group, name: &str) -> &'a Figur
 fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
     let scenario = scenario(&[]);
     let views = views(&scenario);
-    let calibration = views.calibration.as_ref().unwrap();
+    let calibration = views.study.network().unwrap();
     let trial = first_trial(&scenario);
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
     let key = Key { seed: scenario.seed, of: &scenario.drawn, trial: 0, view: "", target: "" };
@@ -111,7 +111,7 @@ fn without_noise_the_truth_comes_back() {
         ("trials = 200", "trials = 1"),
     ]);
     let trial = first_trial(&scenario);
-    assert_eq!(trial.calibrations.len(), 3 * views(&scenario).calibration.as_ref().unwrap().sets.len());
+    assert_eq!(trial.calibrations.len(), 3 * views(&scenario).study.network().unwrap().sets.len());
     for calibrated in trial.calibrations.iter().filter(|calibrated| calibrated.set == 0) {
         for (name, tolerance) in [("c", 1e-7), ("x0", 1e-7), ("y0", 1e-7), ("k1", 1e-10)] {
             let error = figure(calibrated, Group::Iop, name).error.unwrap();
@@ -146,7 +146,7 @@ fn the_reduction_factor_of_reported_sigmas_is_the_ratio_of_two_sigma0() {
 fn what_fails_is_a_row_with_its_reason() {
     let scenario = scenario(&[]);
     let views = views(&scenario);
-    let calibration = views.calibration.as_ref().unwrap();
+    let calibration = views.study.network().unwrap();
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
     let key = Key { seed: 1, of: NAME, trial: 0, view: "", target: "" };
     // An operator that measured nothing.

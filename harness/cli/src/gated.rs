@@ -229,16 +229,15 @@ fn run(plan: &Plan<'_>, name: &str, step: &(dyn Fn() + Sync)) -> Result<Table, F
 fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path, reuse: Option<Reuse<'_>>) -> Result<(), Failure> {
     let (output, revision) = (RecordsFolder::open(records, &scenario.name, None)?, context.revision()?);
     let Some(sweep) = &scenario.sweep else {
-        let mut plan = plan(context, scenario, reuse)?;
+        let plan = plan(context, scenario, reuse)?;
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-        store::run(&output, &mut plan, &revision, &|| progress.step())?;
+        store::run(&output, &plan, &revision, &|| progress.step())?;
         progress.finish(reuse.map_or("measured", |reuse| done(reuse.tally)));
         return Ok(());
     };
     let (registry, tools) = (context.registry()?, context.toolbox.tools());
     let order = Order { scenario, methods: &[], seed: None, trials: None, tools, data: context.data()?, reuse, registry, stop: None };
-    let plan = SweepPlan { order, sweep };
-    store::run_sweep(&output, &plan, &revision, &|| ())?;
+    store::run_sweep(&output, &SweepPlan { order: &order, sweep }, &revision, &|| ())?;
     Ok(())
 }
 

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use calibench_measure::Configured;
 use calibench_run::reuse::Tally;
-use calibench_run::{Order, Plan, Planned, Ran};
-use calibench_scenario::{Scenario, Subject, Transfer};
+use calibench_run::{Order, Plan, Ran};
+use calibench_scenario::{Scenario, Subject, Sweep, Transfer};
 use clap::Args;
 
 use super::context::{Context, Pictured};
@@ -117,37 +117,35 @@ impl Run {
         let Task { scenario, place, methods, revision, stored, tally, .. } = *task;
         let Changes { seed, trials, .. } = self.changes;
         let (registry, tools, data) = (context.registry()?, context.toolbox.tools(), context.data()?);
-        let mut planned =
-            Order { scenario, methods, trials, seed, tools, data, reuse: stored.reuse(tally), registry, stop: None }.planned()?;
-        if let Planned::One(plan) = &planned {
-            say_before(plan)?;
-        }
+        let order = Order { scenario, methods, trials, seed, tools, data, reuse: stored.reuse(tally), registry, stop: None };
+        order.check()?;
+        let plan = order.plan();
+        plan.as_ref().map_or(Ok(()), say_before)?;
         let place = place.of_run(revision);
         let started = Instant::now();
-        let progress = Progress::start(&scenario.name, planned.steps(&place), context.quiet);
-        let ran = planned.run(&place, revision, &|| progress.step())?;
+        let progress = Progress::start(&scenario.name, order.steps(&place), context.quiet);
+        let ran = order.run(&place, revision, &|| progress.step())?;
         progress.finish(&match stored::told(tally) {
             Some(kept) if stored::is_current(tally) => kept,
-            Some(kept) => format!("{}; {kept}", self.told(&planned, &ran, &task.time(started))),
-            None => self.told(&planned, &ran, &task.time(started)),
+            Some(kept) => format!("{}; {kept}", told_of(&order, plan.as_ref(), &ran, &task.time(started))),
+            None => told_of(&order, plan.as_ref(), &ran, &task.time(started)),
         });
-        say_notes(planned.methods());
+        say_notes(order.measuring());
         Ok(match ran {
             Ran::Whole(measured) => Some(measured),
             Ran::Part(_) => None,
         })
     }
+}
 
-    /// What was run.
-    fn told(&self, planned: &Planned<'_>, ran: &Ran, time: &str) -> String {
-        match (planned, ran) {
-            (Planned::One(plan), Ran::Whole(_)) => summary(plan, time),
-            (Planned::One(plan), Ran::Part(done)) => told(done, plan.missing(), time),
-            (Planned::Sweep(_), Ran::Part(done)) => told(done, None, time),
-            (Planned::Sweep(plan), Ran::Whole(_)) => {
-                let trials = self.changes.trials.unwrap_or(plan.order.scenario.trials);
-                format!("{} cells of {trials} trials {time}", plan.sweep.cells())
-            }
+/// What was run: by its `plan`, if it is no sweep.
+fn told_of(order: &Order<'_>, plan: Option<&Plan<'_>>, ran: &Ran, time: &str) -> String {
+    match (plan, ran) {
+        (Some(plan), Ran::Whole(_)) => summary(plan, time),
+        (plan, Ran::Part(done)) => told(done, plan.and_then(Plan::missing), time),
+        (None, Ran::Whole(_)) => {
+            let trials = order.trials.unwrap_or(order.scenario.trials);
+            format!("{} cells of {trials} trials {time}", order.scenario.sweep.as_ref().map_or(0, Sweep::cells))
         }
     }
 }

@@ -13,8 +13,8 @@ use calibench_report::preview;
 use calibench_run::prepared::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
 use calibench_scenario::camera::LocalPlan;
-use calibench_scenario::printed::{Column, Printed};
-use calibench_scenario::{Detector, Phase, Pixels, Scenario, SceneSubject, Starts, Subject, Transfer, ViewsSubject};
+use calibench_scenario::studies::printed::{Column, Printed};
+use calibench_scenario::{Detector, Phase, Pixels, Scenario, SceneSubject, Starts, StudyPlan, Subject, Transfer, ViewsSubject};
 use calibench_synth::stations::sees;
 use clap::Args;
 
@@ -69,7 +69,7 @@ fn card(scenario: &Scenario) -> String {
     match &scenario.subject {
         Subject::Scene(subject) => scene(&mut text, subject),
         Subject::Views(subject) => {
-            if let Some(plan) = &subject.transfer {
+            if let Some(plan) = subject.study.transfer() {
                 transfer(&mut text, plan);
             }
             views(&mut text, subject);

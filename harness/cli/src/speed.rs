@@ -64,7 +64,7 @@ impl SpeedCommand {
             let Subject::Views(subject) = &scenario.subject else {
                 return Err(Failure::input(format!("`{}` has no [testfield]; expected a scenario with views of one", scenario.name)));
             };
-            if subject.transfer.is_some() && methods.is_empty() {
+            if subject.study.transfer().is_some() && methods.is_empty() {
                 let message = format!("`{}` applies calibrations and measures nothing: name methods with -m", scenario.name);
                 return Err(Failure::input(message));
             }

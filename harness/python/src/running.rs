@@ -10,7 +10,7 @@ use calibench_records::parts::Part;
 use calibench_records::stored::Table;
 use calibench_run::parts::{Wanted, merge as merged};
 use calibench_run::store::RecordsFolder;
-use calibench_run::{Order, Place, Planned, Ran, RunError};
+use calibench_run::{Order, Place, Ran, RunError};
 use calibench_scenario::{Scenario, Subject, Transfer};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -165,16 +165,16 @@ fn ran(
     let threads = Stoppable::on(py, threads)?;
     let (trials, seed) = (changes.trials, changes.seed);
     let order = Order { scenario, methods: &methods, trials, seed, tools, data, reuse: None, registry, stop: Some(threads.flag()) };
-    let mut planned = order.planned().map_err(input)?;
-    if let Planned::One(plan) = &planned {
+    order.check().map_err(input)?;
+    if let Some(plan) = order.plan() {
         plan.transfer().and_then(Transfer::warning).map_or(Ok(()), |warning| doubt(py, &format!("{}: {warning}", scenario.name)))?;
         plan.missing().map_or(Ok(()), |why| doubt(py, &format!("{}: unavailable: {why}", scenario.name)))?;
         for info in plan.method_infos() {
             info.unavailable.map_or(Ok(()), |why| doubt(py, &format!("{}: {} unavailable: {why}", scenario.name, info.label)))?;
         }
     }
-    let done = threads.run(py, || planned.run(place, revision, &|| ()).map_err(|error: RunError| input(error)))?;
-    for (name, note) in notes(planned.methods()) {
+    let done = threads.run(py, || order.run(place, revision, &|| ()).map_err(|error: RunError| input(error)))?;
+    for (name, note) in notes(order.measuring()) {
         doubt(py, &format!("{name}: {note}"))?;
     }
     Ok(done)

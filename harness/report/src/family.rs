@@ -13,7 +13,7 @@ use crate::page::Page;
 use crate::places::PAGE;
 use crate::speeds::Speeds;
 use crate::targets::Comparison;
-use crate::{LoadError, Loaded, Places, ReportError, detectors, load, published, sweep, targets, zhu};
+use crate::{LoadError, Loaded, Places, ReportError, detectors, load, papers, published, sweep, targets};
 
 /// The report of `family` from the records of `scenarios`; `None` where nothing of it could be measured here and one that was measured elsewhere is there.
 ///
@@ -54,11 +54,9 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
             page.illustrated.push(table.scenario.clone());
         }
     }
-    if family == zhu::FAMILY {
-        let (text, pictures) = zhu::section(&loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>())?;
-        page.text.push_str(&text);
-        page.pictures.extend(pictures);
-    }
+    let (text, pictures) = papers::section(family, &loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>())?;
+    page.text.push_str(&text);
+    page.pictures.extend(pictures);
     let (mut compared, mut detecting) = (Vec::new(), Vec::new());
     for one in &all {
         match one {

@@ -1,13 +1,12 @@
 //! The page of a report.
 
-use calibench_records::description::{Description, Subject};
+use calibench_records::description::Description;
 
 use crate::answer::{Answers, heading};
 use crate::composed::Composed;
 use crate::markdown::contents;
-use crate::{
-    Canvas, LoadError, Loaded, blocks, network, photographs, poses, printed, recognition, scene_figures, scores_section, sweep, transfer,
-};
+use crate::studies::{self, OnPage, Shown};
+use crate::{Canvas, LoadError, Loaded, scores_section, sweep};
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
@@ -64,78 +63,31 @@ impl Page {
         let without = loaded.scenario.adjusted().is_some() || loaded.has_no_points();
         let deviations = if without { String::new() } else { sweep::deviations(loaded) };
         let stem = self.head(&loaded.name, &loaded.scenario, &deviations);
-        if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {
-            self.text.push_str(&text);
-            self.pictures.extend(pictures);
-            return Ok(());
+        let shown = studies::of(&loaded.scenario).of_sweep(loaded, OnPage { stem: &stem, illustrated: false, printed })?;
+        if shown.scored {
+            self.answers.sweep(loaded);
         }
-        if let Some((text, pictures)) = transfer::sweep(loaded, &stem)? {
-            self.text.push_str(&text);
-            self.pictures.extend(pictures);
-            return Ok(());
-        }
-        if let Some(text) = recognition::sweep(loaded)? {
-            self.text.push_str(&text);
-            return Ok(());
-        }
-        self.answers.sweep(loaded);
-        let (text, picture) = sweep::section(loaded, &stem);
-        self.text.push_str(&text);
-        self.pictures.extend(picture.map(|picture| (format!("{stem}.png"), picture)));
+        self.show(shown);
         Ok(())
     }
 
+    /// Adds the section of a scenario without a sweep.
     pub fn scenario(&mut self, loaded: &Loaded) {
         let scenario = &loaded.scenario;
         let stem = self.head(&loaded.name, scenario, &deviations(loaded));
-        if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&loaded.name)) {
-            self.text.push_str(&text);
-            self.pictures.extend(pictures);
-            return;
+        let on = OnPage { stem: &stem, illustrated: self.illustrated.contains(&loaded.name), printed: &[] };
+        let shown = studies::of(scenario).of(loaded, on);
+        if shown.scored {
+            self.scored = true;
+            self.answers.scenario(loaded);
         }
-        if let Some((text, pictures)) = blocks::section(loaded, &stem) {
-            self.text.push_str(&text);
-            self.pictures.extend(pictures);
-            return;
-        }
-        if let Some((text, pictures)) = transfer::section(loaded, &stem) {
-            self.text.push_str(&text);
-            self.pictures.extend(pictures);
-            return;
-        }
-        match &scenario.subject {
-            Subject::Printed(sets) => {
-                let (text, pictures) = printed::section(loaded, sets, &stem);
-                self.text.push_str(&text);
-                self.pictures.extend(pictures);
-            }
-            Subject::Photographs { .. } => {
-                let photographs::Said { answer, text, pictures } = photographs::section(loaded);
-                answer.into_iter().for_each(|answer| self.answers.say(answer));
-                self.text.push_str(&text);
-                self.pictures.extend(pictures);
-            }
-            Subject::Scene | Subject::Views(_) => {
-                self.scored = true;
-                self.answers.scenario(loaded);
-                self.text.push_str(&scores_section::section(loaded));
-                self.text.push('\n');
-                if let Some(canvas) = poses::of(scenario) {
-                    let file = format!("{stem}-poses.png");
-                    self.text.push_str(&format!("{0}:\n\n![{0}]({file})\n\n", poses::CAPTION));
-                    self.pictures.push((file, canvas));
-                }
-                if let Some(figures) = scene_figures::figures(loaded) {
-                    self.text.push_str(&format!(
-                        "The image of the first trial with truth, approximate positions and the results of one method, and {}, with all results:\n\n\
-                         ![Image, approximations and truth]({stem}.png)\n\n![Targets with all results]({stem}-targets.png)\n\n",
-                        figures.shown
-                    ));
-                    self.pictures.push((format!("{stem}.png"), figures.overview));
-                    self.pictures.push((format!("{stem}-targets.png"), figures.panels));
-                }
-            }
-        }
+        self.show(shown);
+    }
+
+    fn show(&mut self, Shown { text, pictures, answer, .. }: Shown) {
+        answer.into_iter().for_each(|answer| self.answers.say(answer));
+        self.text.push_str(&text);
+        self.pictures.extend(pictures);
     }
 
     /// The page with all that is beside it.

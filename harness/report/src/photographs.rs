@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use calibench_images::photo::Levels;
 use calibench_model::{PixelPoint, escape, median};
-use calibench_records::description::{Subject, looks};
+use calibench_records::description::{Study, looks};
 use calibench_records::judgement::Summary;
 use calibench_records::stored::read_judgement;
 
@@ -125,7 +125,7 @@ fn judged(loaded: &Loaded) -> Said {
 
 /// The judgement that the scenario asks for, or why its records cannot be read.
 fn judgement_of(loaded: &Loaded) -> Option<Result<Summary, String>> {
-    let wanted = matches!(loaded.scenario.subject, Subject::Photographs { judged: true });
+    let wanted = matches!(loaded.scenario.study, Study::Photographs { judged: true });
     let read = || read_judgement(&loaded.folder, &loaded.name).map_err(|error| error.to_string());
     wanted.then(|| read().map(|(seed, rows)| Summary::new(&rows, seed)))
 }

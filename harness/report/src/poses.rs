@@ -1,6 +1,6 @@
 //! A board and the poses in which cameras see it.
 
-use calibench_records::description::{Description, Subject, Views};
+use calibench_records::description::{Description, Views};
 use nalgebra::{Point3, Vector3};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -30,7 +30,7 @@ const GAP: i32 = 110;
 
 /// The picture of a scenario with one chessboard and some stations; `None` for another.
 pub(crate) fn of(scenario: &Description) -> Option<Canvas> {
-    let Subject::Views(views) = &scenario.subject else { return None };
+    let views = scenario.study.views()?;
     is_board(views).then(|| picture(views)).flatten()
 }
 
@@ -147,8 +147,6 @@ mod tests {
             normal: Some([0.0, 0.0, 1.0]),
             stations: [[300.0, 0.0, 600.0], [-400.0, 200.0, 700.0], [0.0, -300.0, 500.0]].map(station).into(),
             targets: vec![corner(-90.0, -60.0), corner(90.0, -60.0), corner(0.0, 60.0)],
-            adjustment: None,
-            blocks: None,
             room: None,
         }
     }

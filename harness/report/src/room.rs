@@ -1,10 +1,10 @@
 //! How much room targets have for the windows of methods.
 
-use calibench_records::description::{Description, Room, Subject, operator};
+use calibench_records::description::{Description, Room, operator};
 
 /// What is to be known of windows on a scene whose targets have neighbours; empty where no room is known.
 pub(crate) fn sentence<'l>(scenario: &Description, labels: impl Iterator<Item = &'l str>) -> String {
-    let Subject::Views(views) = &scenario.subject else { return String::new() };
+    let Some(views) = scenario.study.views() else { return String::new() };
     let Some(Room { least, middle }) = views.room else { return String::new() };
     let beyond: Vec<String> =
         labels.filter(|label| window(scenario, label).is_some_and(|side| side > 2.0 * least)).map(|label| format!("`{label}`")).collect();

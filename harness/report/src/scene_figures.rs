@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use calibench_model::{CornerPoint, Image, PixelPoint};
-use calibench_records::description::Subject;
 use calibench_records::results::{MethodInfo, Outcome};
 
 use super::canvas::Canvas;
@@ -108,7 +107,7 @@ pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
 
 /// The kind of each target, where the records tell it.
 fn kinds(loaded: &Loaded) -> BTreeMap<&str, &str> {
-    let Subject::Views(views) = &loaded.scenario.subject else { return BTreeMap::new() };
+    let Some(views) = loaded.scenario.study.views() else { return BTreeMap::new() };
     views.targets.iter().map(|target| (target.id.as_str(), target.kind.as_str())).collect()
 }
 

@@ -210,7 +210,7 @@ fn by_target(loaded: &Loaded) -> String {
 mod tests {
     use std::path::PathBuf;
 
-    use calibench_records::description::{Description, Subject};
+    use calibench_records::description::{Description, Study};
     use calibench_records::points::{RecordHead, RunInfo};
     use calibench_records::results::{MethodInfo, Trial};
     use calibench_records::score::{Scores, TargetScore};
@@ -305,7 +305,7 @@ mod tests {
             finders: Vec::new(),
             methods: Vec::new(),
             defaults: [].into(),
-            subject: Subject::Scene,
+            study: Study::Scene,
             sweep: None,
         };
         Loaded {

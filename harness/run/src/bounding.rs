@@ -10,7 +10,7 @@ pub(crate) enum Bounding<'a> {
     /// Nothing has any.
     Nothing,
     /// A scene, which may lie elsewhere in each trial.
-    Scene(Box<scene::Prepared<'a>>),
+    Scene(Box<scene::Trials<'a>>),
     /// Views that are the same in all trials, with their bounds.
     Fixed(TrialBounds),
     /// Views that change.
@@ -30,7 +30,7 @@ impl<'a> Bounding<'a> {
     pub fn of(&self, plan: &Plan<'_>, number: u64) -> Result<Cow<'_, TrialBounds>, RunError> {
         Ok(match self {
             Self::Nothing => Cow::Owned(TrialBounds::default()),
-            Self::Scene(prepared) => Cow::Owned(scene::bounds(plan, prepared, number)),
+            Self::Scene(trials) => Cow::Owned(scene::bounds(plan, trials, number)),
             Self::Fixed(bounds) => Cow::Borrowed(bounds),
             Self::Views(trials) => Cow::Owned(trials.bounds(plan, number)?),
         })

@@ -10,14 +10,13 @@ use calibench_model::told::{Told, notes};
 use calibench_records::description::{
     self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Target, Value, Views, operator,
 };
-use calibench_scenario::calibration::CheckPlan;
-use calibench_scenario::printed::{NETWORK, SENSOR};
-use calibench_scenario::{Blocks, Printed, Scenario, Subject, Sweep, ViewsSubject};
+use calibench_scenario::studies::network::CheckPlan;
+use calibench_scenario::studies::printed::{NETWORK, SENSOR};
+use calibench_scenario::{Blocks, Printed, Scenario, Study, Subject, Sweep, ViewsSubject};
 use calibench_synth::stations::Station;
 use calibench_synth::view::View;
 
 use crate::prepared::is_pointed_at;
-use crate::printed::PRINT;
 
 /// What methods told, as paragraphs beside a scenario's own notes.
 pub fn told_notes<'m>(told: impl IntoIterator<Item = (&'m str, Told)>) -> impl Iterator<Item = String> {
@@ -27,11 +26,11 @@ pub fn told_notes<'m>(told: impl IntoIterator<Item = (&'m str, Told)>) -> impl I
 /// The description of `scenario`, which `methods` were run on, its own or others; but for what these tell ([`told_notes`]).
 pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     let default = |method: &Configured| (operator(&method.label).to_owned(), method.default_label.clone());
-    let subject = match &scenario.subject {
-        Subject::Scene(_) => description::Subject::Scene,
-        Subject::Views(subject) => description::Subject::Views(Box::new(views(subject))),
-        Subject::Printed(printed) => description::Subject::Printed(Box::new(of_print(printed))),
-        Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
+    let study = match &scenario.subject {
+        Subject::Scene(_) => description::Study::Scene,
+        Subject::Views(subject) => of_views(subject),
+        Subject::Printed(printed) => description::Study::Printed(Box::new(of_print(printed))),
+        Subject::Photographs(subject) => description::Study::Photographs { judged: subject.judgement.is_some() },
     };
     Description {
         why: scenario.why.clone(),
@@ -44,7 +43,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         methods: labels(scenario),
         finders: finders(scenario.methods.iter().chain(methods)),
         defaults: scenario.methods.iter().chain(methods).map(default).collect(),
-        subject,
+        study,
         sweep: scenario.sweep.as_ref().map(sweep),
     }
 }
@@ -69,17 +68,10 @@ fn finders<'m>(methods: impl Iterator<Item = &'m Configured>) -> Vec<String> {
     names.into_iter().map(str::to_owned).collect()
 }
 
-/// Those of methods that measure, or of calibrations that are applied.
+/// Those of methods that measure, or of the study's own.
 fn labels(scenario: &Scenario) -> Vec<String> {
-    let transfer = match &scenario.subject {
-        Subject::Views(views) => views.transfer.as_ref(),
-        Subject::Printed(_) => return vec![PRINT.to_owned()],
-        Subject::Scene(_) | Subject::Photographs(_) => None,
-    };
-    match transfer {
-        Some(transfer) => transfer.methods.iter().map(|method| method.name.clone()).collect(),
-        None => scenario.methods.iter().map(|method| method.label.clone()).collect(),
-    }
+    let measuring = || scenario.methods.iter().map(|method| method.label.clone()).collect();
+    scenario.subject.study().own_methods().unwrap_or_else(measuring)
 }
 
 fn of_print(printed: &Printed) -> description::Printed {
@@ -96,7 +88,8 @@ fn of_print(printed: &Printed) -> description::Printed {
         k: camera.k,
         p: camera.p,
     };
-    let point = |point: &calibench_scenario::printed::CheckPoint| CheckPoint { name: point.name.clone(), at: point.at.coords.into() };
+    let point =
+        |point: &calibench_scenario::studies::printed::CheckPoint| CheckPoint { name: point.name.clone(), at: point.at.coords.into() };
     description::Printed {
         sensor: SENSOR.to_owned(),
         size: [size.width, size.height],
@@ -120,8 +113,21 @@ fn sweep(sweep: &Sweep) -> description::Sweep {
     description::Sweep { axes: sweep.axes.iter().map(axis).collect(), cells: (0..sweep.cells()).map(cell).collect() }
 }
 
+fn of_views(subject: &ViewsSubject) -> description::Study {
+    let views = Box::new(views(subject));
+    match &subject.study {
+        Study::Points => description::Study::Views(views),
+        Study::Network(plan) => {
+            let told = Adjustment { pitch_um: plan.start.pitch_um, drawn: plan.drawn.is_some() };
+            description::Study::Network(views, told)
+        }
+        Study::Blocks(plan) => description::Study::Blocks(views, in_blocks(subject, plan)),
+        Study::Transfer { .. } => description::Study::Transfer(views),
+    }
+}
+
 fn views(subject: &ViewsSubject) -> Views {
-    let check = subject.calibration.as_ref().and_then(|calibration| calibration.check.as_ref());
+    let check = subject.study.network().and_then(|calibration| calibration.check.as_ref());
     let size = subject.camera.size();
     Views {
         size: [size.width, size.height],
@@ -130,11 +136,6 @@ fn views(subject: &ViewsSubject) -> Views {
         normal: subject.field.plates.first().map(|plate| plate.normal().into()),
         stations: stations(subject, check),
         targets: targets(subject, check),
-        adjustment: subject
-            .calibration
-            .as_ref()
-            .map(|calibration| Adjustment { pitch_um: calibration.start.pitch_um, drawn: calibration.drawn.is_some() }),
-        blocks: subject.blocks.as_ref().map(|blocks| in_blocks(subject, blocks)),
         room: room(subject),
     }
 }
@@ -170,13 +171,13 @@ fn stations(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<descriptio
         // A camera looks along its -z.
         sight: (-station.pose.rotation.row(2).transpose()).into(),
         second_step: check.is_some_and(|check| check.views.contains(&index))
-            || subject.transfer.as_ref().is_some_and(|transfer| transfer.stations.contains(&index)),
+            || subject.study.transfer().is_some_and(|transfer| transfer.stations.contains(&index)),
     };
     subject.stations.iter().enumerate().map(station).collect()
 }
 
 fn targets(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<Target> {
-    let transfer = subject.transfer.as_ref();
+    let transfer = subject.study.transfer();
     let role = |index: &usize| match check {
         None if transfer.is_some_and(|transfer| transfer.control.contains(index)) => Some(Role::Control),
         None if transfer.is_some_and(|transfer| transfer.check.contains(index)) => Some(Role::Check),

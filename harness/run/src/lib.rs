@@ -1,6 +1,5 @@
 //! Scenarios to results: truth-blind measuring, scored against the truth at the end.
 
-pub mod blocks;
 mod bounded;
 mod bounding;
 mod bounds;
@@ -10,25 +9,22 @@ mod error;
 pub mod judgement;
 mod made;
 mod measured;
-pub mod network;
 mod order;
 pub mod origin;
 pub mod parts;
 mod photographs;
+mod place;
 mod plan;
-mod planned;
 pub mod prepared;
-pub mod printed;
-pub mod recognition;
 pub mod reuse;
 mod rmse;
 mod scene;
 pub mod shots;
 pub mod store;
+pub mod studies;
 mod tally;
 mod theory;
 mod tools;
-pub mod transfer;
 mod trials;
 pub mod truth;
 mod viewed;
@@ -36,8 +32,8 @@ mod views;
 
 pub use error::RunError;
 pub use order::Order;
+pub use place::{Place, Ran};
 pub use plan::Plan;
-pub use planned::{Place, Planned, Ran};
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
 pub use tools::Tools;
 

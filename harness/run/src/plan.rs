@@ -10,17 +10,12 @@ use calibench_photographs::{Finder, method_info};
 use calibench_records::names::DETECTION;
 use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
-use calibench_scenario::transfer::{Calibrates, Solver};
-use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
+use calibench_scenario::{PhotographsSubject, Scenario, Study, Subject, Transfer};
 
-use crate::RunError;
 use crate::measured::{Answers, Asked, Pictured, of_its_kinds};
-use crate::printed::PRINT;
 use crate::tally::Reuse;
 use crate::tools::Tools;
-
-/// The version of calibration methods: raised when their numbers change on purpose.
-const TRANSFER_VERSION: &str = "1";
+use crate::{RunError, studies};
 
 /// How a scenario is run.
 pub struct Plan<'a> {
@@ -92,16 +87,8 @@ impl<'a> Plan<'a> {
 
     /// The methods as results list them.
     pub fn method_infos(&self) -> Vec<MethodInfo> {
-        if let Subject::Printed(_) = self.scenario.subject {
-            return vec![MethodInfo { label: PRINT.into(), version: "1".into(), unavailable: None }];
-        }
-        if let Some(transfer) = self.transfer() {
-            let info = |(place, method): (usize, &calibench_scenario::transfer::Method)| MethodInfo {
-                label: method.name.as_str().into(),
-                version: self.version(method).into(),
-                unavailable: self.tools.lack(transfer, place),
-            };
-            return transfer.methods.iter().enumerate().map(info).collect();
+        if let Some(own) = studies::method_infos(&self.scenario.subject, self.tools) {
+            return own;
         }
         let missing = self.missing();
         let info =
@@ -109,22 +96,10 @@ impl<'a> Plan<'a> {
         self.methods.iter().map(info).collect()
     }
 
-    /// The version of a calibration that is applied, with those of what measures for it and solves for it.
-    fn version(&self, method: &calibench_scenario::transfer::Method) -> String {
-        let measuring = method.measured_by.iter().map(|measuring| format!("{} {}", measuring.operator.label, measuring.operator.version));
-        let solver = match method.calibrates {
-            Calibrates::FromBoard { solver: Solver::Opencv, .. } => {
-                self.tools.solver.map(|solver| format!("{} {}", solver.name(), solver.version()))
-            }
-            _ => None,
-        };
-        [TRANSFER_VERSION.to_owned()].into_iter().chain(measuring).chain(solver).collect::<Vec<_>>().join(", ")
-    }
-
     /// The calibrations that are applied, where those are the methods.
     pub fn transfer(&self) -> Option<&'a Transfer> {
         let Subject::Views(views) = &self.scenario.subject else { return None };
-        views.transfer.as_ref()
+        views.study.transfer()
     }
 
     /// Name and version of the detector that gives the approximate positions, if one does.
@@ -233,7 +208,7 @@ impl<'a> Plan<'a> {
     /// Whether what finders of boards find is counted: where they are among the methods, and nothing else is made of their points.
     pub(crate) fn counts_detections(&self) -> bool {
         let Subject::Views(views) = &self.scenario.subject else { return false };
-        let plain = views.calibration.is_none() && views.blocks.is_none() && views.recognition.is_none() && views.transfer.is_none();
+        let plain = matches!(views.study, Study::Points) && views.recognition.is_none();
         let finds = |method: &Configured| {
             views.sheet.is_some_and(|board| method.board_finder().is_some_and(|finder| finder.unfit(&board).is_none()))
         };

@@ -24,8 +24,8 @@ use crate::measured::{Asked, Pictured};
 /// The name of the only view.
 pub const VIEW: &str = "image";
 
-/// What is the same in all trials.
-pub(super) struct Prepared<'a> {
+/// What makes the trials of a scene, with what is the same in all of them.
+pub(super) struct Trials<'a> {
     subject: &'a SceneSubject,
     renderer: Renderer,
     bounds: Option<TargetBounds>,
@@ -33,7 +33,7 @@ pub(super) struct Prepared<'a> {
     light: Option<Image<'static>>,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> Trials<'a> {
     pub(super) fn new(plan: &Plan<'_>, subject: &'a SceneSubject) -> Result<Self, RunError> {
         let (scene, quantised) = (&subject.scene, subject.bits.map_or(0.0, |bits| ((1_u64 << bits) - 1) as f64));
         let rounding = if quantised > 0.0 { 1.0 / (12.0 * quantised * quantised) } else { 0.0 };
@@ -51,8 +51,8 @@ impl<'a> Prepared<'a> {
     }
 }
 
-pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
-    let Prepared { subject, renderer, bounds, light } = prepared;
+pub(super) fn run_trial(plan: &Plan<'_>, trials: &Trials<'_>, number: u64) -> Result<Trial, RunError> {
+    let Trials { subject, renderer, bounds, light } = trials;
     let (subject, bounds) = (*subject, bounds.as_ref());
     let key = Key { seed: plan.seed, of: &plan.scenario.drawn, trial: number, view: VIEW, target: "" };
     let truth = trial_truth(subject, key);
@@ -84,9 +84,9 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
 }
 
 /// The bounds of trial `number`.
-pub(super) fn bounds(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> TrialBounds {
-    let truth = trial_truth(prepared.subject, Key { view: VIEW, ..plan.key(number) });
-    let all = truth.targets.iter().zip(by_target(prepared.bounds.as_ref(), &truth));
+pub(super) fn bounds(plan: &Plan<'_>, trials: &Trials<'_>, number: u64) -> TrialBounds {
+    let truth = trial_truth(trials.subject, Key { view: VIEW, ..plan.key(number) });
+    let all = truth.targets.iter().zip(by_target(trials.bounds.as_ref(), &truth));
     all.map(|(target, bounds)| (VIEW.into(), target.id.as_str().into(), bounds)).collect()
 }
 

@@ -150,7 +150,7 @@ impl RecordsFolder {
 ///
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
-pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
+pub fn run(records: &RecordsFolder, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
     let stamp = records.stamp(plan.scenario, plan.reuse, std::slice::from_ref(plan));
     records.unless_unchanged(stamp, plan.reuse, |folder| {
         let measured = fill(folder, plan, revision, step)?;
@@ -173,7 +173,7 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
     let mut records = RecordWriter::new(table(folder, Table::Points)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
     let (mut calibrations, mut measured) = (calibrations(folder, name, plan, revision)?, 0);
-    let adjusted_alone = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
+    let adjusted_alone = !plan.scenario.subject.is_measured();
     if adjusted_alone {
         records.adjusted_alone().map_err(io::Error::other)?;
     }
@@ -215,7 +215,7 @@ fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str)
 /// How a swept scenario is run.
 pub struct SweepPlan<'a> {
     /// What is asked for: methods in place of those of each cell, if there are any; of trials a cell in which nothing is random has one.
-    pub order: Order<'a>,
+    pub order: &'a Order<'a>,
     /// The scenario's sweep.
     pub sweep: &'a Sweep,
 }

@@ -4,13 +4,14 @@ use calibench_measure::coverage::cover;
 use calibench_random::Key;
 use calibench_records::parts::Span;
 use calibench_records::results::{Calibrated, Trial};
-use calibench_scenario::{PhotographsSubject, Printed, Subject};
+use calibench_scenario::{PhotographsSubject, Printed, Study, Subject};
 use rayon::prelude::*;
 
 use super::bounding::Bounding;
 use super::made::Made;
-use super::transfer::Campaign;
-use super::{Plan, RunError, photographs, printed, scene, views};
+use super::studies::printed;
+use super::studies::transfer::Campaign;
+use super::{Plan, RunError, photographs, scene, views};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 pub(crate) const BATCH: u64 = 32;
@@ -24,7 +25,7 @@ pub(crate) enum Work<'a> {
     /// Printed figures.
     Printed(&'a Printed),
     /// A rendered scene.
-    Scene(Box<scene::Prepared<'a>>),
+    Scene(Box<scene::Trials<'a>>),
     /// Views of a testfield.
     Views(Box<views::Trials<'a>>),
     /// Calibrations that are applied.
@@ -38,7 +39,7 @@ impl Work<'_> {
             Self::Photographs(subject) => return Ok(photographs::run(plan, subject, step)?.into()),
             Self::Nothing => Made::default(),
             Self::Printed(printed) => printed::run(printed).into(),
-            Self::Scene(prepared) => scene::run_trial(plan, prepared, number)?.into(),
+            Self::Scene(trials) => scene::run_trial(plan, trials, number)?.into(),
             Self::Views(trials) => trials.measured(plan, number)?,
             Self::Transfer(campaign) => campaign.trial(plan.key(number))?.into(),
         };
@@ -95,10 +96,10 @@ impl Plan<'_> {
         Ok(match &self.scenario.subject {
             Subject::Photographs(subject) => Work::Photographs(subject),
             Subject::Printed(printed) => Work::Printed(printed),
-            Subject::Scene(subject) => Work::Scene(Box::new(scene::Prepared::new(self, subject)?)),
-            Subject::Views(subject) => match &subject.transfer {
-                Some(transfer) => Work::Transfer(Box::new(Campaign::new(subject, transfer, self.tools)?)),
-                None => Work::Views(Box::new(views::Trials::new(self, subject)?)),
+            Subject::Scene(subject) => Work::Scene(Box::new(scene::Trials::new(self, subject)?)),
+            Subject::Views(subject) => match &subject.study {
+                Study::Transfer { plan, board } => Work::Transfer(Box::new(Campaign::new(subject, plan, board.as_deref(), self.tools)?)),
+                Study::Points | Study::Network(_) | Study::Blocks(_) => Work::Views(Box::new(views::Trials::new(self, subject)?)),
             },
         })
     }
@@ -106,7 +107,7 @@ impl Plan<'_> {
     /// What computes the bounds of the methods that are asked for, apart from measuring.
     pub(crate) fn bounding(&self) -> Result<Bounding<'_>, RunError> {
         Ok(match &self.scenario.subject {
-            Subject::Scene(subject) => Bounding::Scene(Box::new(scene::Prepared::new(self, subject)?)),
+            Subject::Scene(subject) => Bounding::Scene(Box::new(scene::Trials::new(self, subject)?)),
             Subject::Views(subject) => Bounding::views(views::Trials::new(self, subject)?),
             Subject::Photographs(_) | Subject::Printed(_) => Bounding::Nothing,
         })

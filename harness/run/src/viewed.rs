@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::detection::{Tally, TruePlaces};
 use super::prepared::{Pointed, Prepared, PreparedView, is_pointed_at, kind_of, seen, started};
-use super::recognition::{Counted, Recognised, keep_steps, recognise, shown};
+use super::studies::recognition::{Counted, Recognised, keep_steps, recognise, shown};
 use super::{Plan, RunError};
 use crate::made::Made;
 use crate::measured::{Answers, Asked, Pictured};

@@ -4,7 +4,7 @@ use calibench_model::Measurement;
 use calibench_model::camera::CameraModel;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, PointResult, Trial};
-use calibench_scenario::ViewsSubject;
+use calibench_scenario::{Study, ViewsSubject};
 
 use super::bounded::TrialBounds;
 use super::bounds::TargetBounds;
@@ -12,8 +12,7 @@ use super::prepared::{Prepared, kind_of, renderer, seen};
 use super::viewed::run_views;
 use super::{Plan, RunError};
 use crate::made::Made;
-use crate::network::Job;
-use crate::{blocks, network};
+use crate::studies::{self, network};
 
 /// Pixels of light that are kept at most, 4 bytes each.
 const MOST_LIGHT: usize = 50_000_000;
@@ -35,7 +34,7 @@ impl<'a> Trials<'a> {
     /// Those of `plan`.
     pub fn new(plan: &Plan<'_>, subject: &'a ViewsSubject) -> Result<Self, RunError> {
         // Drawn coordinates are those of no image.
-        let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
+        let drawn = subject.study.plan().drawn().is_some();
         let bounds = if plan.bounds && !drawn { bounds(plan, subject)? } else { None };
         // What is drawn anew in each trial has its bounds there.
         let fixed = bounds.as_ref().filter(|_| !subject.changes());
@@ -60,7 +59,7 @@ impl<'a> Trials<'a> {
     fn changed<T>(&self, plan: &Plan<'_>, number: u64, made: impl FnOnce(&Prepared<'_>) -> Result<T, RunError>) -> Result<T, RunError> {
         let (key, subject) = (plan.key(number), self.prepared.subject);
         // Of points that are not kept nobody asks for the bound.
-        let kept = number == 0 || subject.blocks.as_ref().is_none_or(|blocks| blocks.keep_points);
+        let kept = number == 0 || !matches!(subject.study, Study::Blocks(_)) || subject.keeps_points();
         let bounds = self.bounds.as_ref().filter(|_| kept);
         made(&Prepared::with(subject, &subject.stations_of(key)?, key, bounds, self.prepared.renderer.clone())?)
     }
@@ -77,52 +76,30 @@ impl<'a> Trials<'a> {
 
 fn measured(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Made, RunError> {
     let subject = prepared.subject;
-    let drawn = subject.calibration.as_ref().and_then(|calibration| calibration.drawn.as_ref());
-    let mut made = match drawn {
+    let mut made = match subject.study.plan().drawn() {
         Some(sigmas) => draw_views(plan, prepared, sigmas, key).into(),
         None => run_views(plan, prepared, key)?,
     };
-    if subject.calibration.is_some() {
+    if subject.study.network().is_some() {
         made.counted.clear();
     }
     if !is_adjusted_apart(subject) {
         made.trial.calibrations = adjusted(plan, subject, &made.trial.points, key);
     }
-    if key.trial > 0 && !keeps_points(subject) {
+    if key.trial > 0 && !subject.keeps_points() {
         made.trial.points.clear();
     }
     Ok(made)
 }
 
-/// Whether the points of all trials are kept, and not those of the first alone.
-fn keeps_points(subject: &ViewsSubject) -> bool {
-    match (&subject.calibration, &subject.blocks) {
-        (Some(calibration), _) => calibration.keep_points,
-        (None, Some(blocks)) => blocks.keep_points,
-        // What is counted of all trials is in their figures.
-        (None, None) => subject.recognition.is_none(),
-    }
-}
-
 /// Whether what is made of points is made apart from them: where all of them are kept.
 pub(super) fn is_adjusted_apart(subject: &ViewsSubject) -> bool {
-    let is_drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
-    (subject.calibration.is_some() || subject.blocks.is_some()) && keeps_points(subject) && !is_drawn
+    studies::of(&subject.study).is_some() && subject.keeps_points() && subject.study.plan().drawn().is_none()
 }
 
 /// What is made of the points of the trial of `key`: what is adjusted for the methods that `plan` asks for. Stations are the same in all trials.
 pub(super) fn adjusted(plan: &Plan<'_>, subject: &ViewsSubject, points: &[PointResult], key: Key<'_>) -> Vec<Calibrated> {
-    let ViewsSubject { camera, field, unit, stations, .. } = subject;
-    match (&subject.calibration, &subject.blocks) {
-        (Some(calibration), _) => {
-            network::calibrate(&Job { calibration, field, unit: *unit, camera, stations }, points, &plan.available(), key)
-        }
-        (None, Some(blocks)) => {
-            let job = blocks::Job { blocks, field, unit: *unit, stations, key };
-            blocks::adjust_blocks(&job, points, &plan.available(), key.trial == 0)
-        }
-        (None, None) => Vec::new(),
-    }
+    studies::of(&subject.study).map_or_else(Vec::new, |study| study.adjust(subject, points, &plan.available(), key))
 }
 
 /// Coordinates that are drawn from the truth: by the hand, or with the standard deviation that the scenario gives.

@@ -4,48 +4,46 @@ use std::ops::Range;
 use std::path::Path;
 
 use calibench_diagnostics::{Problem, Problems};
-use calibench_measure::{Configured, Registry};
+use calibench_measure::Registry;
 use calibench_model::TargetKind;
 use calibench_random::Key;
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::blocks;
-use super::calibration::{self, Seen};
 use super::methods::{check_boards, check_busy, check_kinds, methods, without_board};
-use super::recognition;
 use super::section::Section;
 use super::site::Surroundings;
+use super::studies::printed;
+use super::study_tables::{self, StudyTables};
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::Head;
-use super::{Drawn, Resolved, Scenario, Subject, ViewsSubject, figure, photographs, printed, scene};
+use super::{Drawn, Resolved, Scenario, Subject, figure, photographs, scene};
 
 /// Side of the bound's window where the file gives none, px.
 const BOUND_WINDOW: usize = 15;
 
-/// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 19] = [
-    "sweep",
-    "method",
-    "calibration",
-    "blocks",
-    "block",
-    "recognition",
-    "transfer",
-    "scene",
-    "figure",
-    "photographs",
-    "printed",
-    "judgement",
-    "camera",
-    "testfield",
-    "stations",
-    "station",
-    "optics",
-    "sensor",
-    "pointing",
-];
+/// The keys of the file's top level that are tables of their own, before those of studies and behind them.
+const TOP_TABLES: ([&str; 2], [&str; 14]) = (
+    ["sweep", "method"],
+    [
+        "recognition",
+        "transfer",
+        "scene",
+        "figure",
+        "photographs",
+        "printed",
+        "judgement",
+        "camera",
+        "testfield",
+        "stations",
+        "station",
+        "optics",
+        "sensor",
+        "pointing",
+    ],
+);
+
 /// Reads a scenario called `name` from the `text` of `file`, with the methods of `registry`.
 ///
 /// # Errors
@@ -167,10 +165,7 @@ fn read(
     let judged = root.take_table("judgement", "[judgement]", problems);
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
-    let calibration = root.take_table("calibration", "[calibration]", problems);
-    let blocks = root.take_table("blocks", "[blocks]", problems);
-    let listed_blocks = root.take_tables("block", "[[block]]", problems).unwrap_or_default();
-    let recognition = root.take_table("recognition", "[recognition]", problems);
+    let studied = StudyTables::take(&mut root, problems);
     let transfer = root.take_table("transfer", "[transfer]", problems);
     let start = root.span.clone();
     if methods_missing && transfer.is_none() && print.is_none() && problems.is_empty() {
@@ -179,17 +174,17 @@ fn read(
     let listed = listed.unwrap_or_default();
     let listed_at: Vec<_> = listed.iter().map(|section| section.span.clone()).collect();
     let methods = methods(listed, registry, problems);
-    let head: Option<Head> = root.read(&TOP_TABLES, problems);
+    let tables: Vec<&str> = TOP_TABLES.0.into_iter().chain(study_tables::keys()).chain(TOP_TABLES.1).collect();
+    let head: Option<Head> = root.read(&tables, problems);
     let key = |of| Key { seed: head.as_ref().map_or(0, |head| head.seed.0), of, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
-    let others = [&scene, &figure, &photographs, &judged, &calibration, &blocks, &recognition];
-    let other = others.into_iter().flatten().next().map(|section| section.span.clone()).or_else(|| stray.clone());
+    let others = [&scene, &figure, &photographs, &judged].into_iter().flatten().chain(studied.tables());
+    let other = others.map(|section| section.span.clone()).next().or_else(|| stray.clone());
     let other = other.or_else(|| listed_at.first().cloned());
     alone(transfer.as_ref(), [print.as_ref().map(|print| print.span.clone()), other.clone()], BESIDE_TRANSFER, problems)?;
     alone(print.as_ref(), [None, other], "nothing is measured there", problems)?;
-    let adjusted = Adjusted { calibration, blocks, listed_blocks, recognition };
     if views.span().is_none() {
-        adjusted.without_field(problems);
+        studied.without_field(problems);
     }
     let subject = match (scene, figure, photographs, views.span()) {
         (Some(section), None, None, None) => scene::read(section, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
@@ -204,7 +199,7 @@ fn read(
         }
         (None, None, None, Some(_)) => {
             let views = views.read(imaging, &start, folder, [key(&drawn.field), key(&drawn.all)], problems);
-            views.and_then(|views| adjusted.read(views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
+            views.and_then(|views| studied.read(views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
         }
         (None, None, None, None) if transfer.is_some() => transfer
             .and_then(|section| Surroundings { name, folder, registry, parse }.read(section, &mut resolved, problems))
@@ -297,56 +292,4 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
         problems.push(Problem::new(value.span(), format!("`{key}` is empty: expected a sentence")));
     }
     value.into_inner()
-}
-
-/// The tables that say what is recognised and adjusted.
-struct Adjusted<'i> {
-    calibration: Option<Section<'i>>,
-    blocks: Option<Section<'i>>,
-    listed_blocks: Vec<Section<'i>>,
-    recognition: Option<Section<'i>>,
-}
-
-impl Adjusted<'_> {
-    /// Says what cannot be without a field.
-    fn without_field(&self, problems: &mut Vec<Problem>) {
-        let blocks = self.blocks.as_ref().or(self.listed_blocks.first());
-        let needs = [
-            (self.calibration.as_ref(), "[calibration] without [testfield]: expected one with [camera] and stations"),
-            (blocks, "blocks without [testfield]: expected one with [camera] and stations"),
-            (self.recognition.as_ref(), "[recognition] without [testfield]: expected a coded one with [camera] and stations"),
-        ];
-        problems.extend(needs.into_iter().filter_map(|(section, message)| Some(Problem::new(section?.span.clone(), message))));
-    }
-
-    /// `views` with what is done with their points.
-    fn read(self, views: ViewsSubject, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
-        let ViewsSubject { field, stations, .. } = &views;
-        let recognition = self.recognition.map(|section| recognition::read(section, field, stations, problems));
-        let recognition = recognition.map_or(Some(None), |read| read.map(Some))?;
-        let views = ViewsSubject { recognition, ..views };
-        let ViewsSubject { camera, field, stations, redraw, survey_sigma, .. } = &views;
-        let seen = Seen { camera, field, stations, redrawn: redraw.is_some(), survey_sigma: *survey_sigma };
-        match (self.calibration, self.blocks, self.listed_blocks) {
-            (None, None, listed) if listed.is_empty() => Some(views),
-            (Some(section), None, listed) if listed.is_empty() => {
-                let calibration = calibration::read(section, &seen, methods, problems)?;
-                Some(ViewsSubject { calibration: Some(calibration), ..views })
-            }
-            (None, Some(section), listed) => {
-                let blocks = blocks::read(section, listed, &seen, methods, problems)?;
-                Some(ViewsSubject { blocks: Some(blocks), ..views })
-            }
-            (Some(_), blocks, listed) => {
-                let at = blocks.or_else(|| listed.into_iter().next()).map_or(0..0, |section| section.span);
-                problems.push(Problem::new(at, "blocks beside [calibration]: expected one of them"));
-                None
-            }
-            (None, None, listed) => {
-                let at = listed.into_iter().next().map_or(0..0, |section| section.span);
-                problems.push(Problem::new(at, "[[block]] without [blocks]").help("[blocks] says `c` and `sigma_px` of all blocks"));
-                None
-            }
-        }
-    }
 }

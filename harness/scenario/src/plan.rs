@@ -50,8 +50,8 @@ impl Scenario {
                 still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
             }
             Subject::Views(views) => {
-                let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
-                still && views.transfer.is_none() && views.hand.is_steady() && !views.changes() && !views.imaging.is_random()
+                let still = !views.study.plan().is_random() && views.hand.is_steady();
+                still && !views.changes() && !views.imaging.is_random()
             }
             Subject::Photographs(_) | Subject::Printed(_) => true,
         }
@@ -64,9 +64,7 @@ impl Scenario {
 
     /// The pixel pitch of the adjusted camera, um.
     pub fn pitch_um(&self) -> Option<f64> {
-        let Subject::Views(views) = &self.subject else { return None };
-        let calibrated = views.calibration.as_ref().map(|calibration| calibration.start.pitch_um);
-        calibrated.or_else(|| views.transfer.as_ref().map(|transfer| transfer.pitch_um))
+        self.subject.study().pitch_um()
     }
 
     /// The part of the name before the first `/`: the folder, and the report.

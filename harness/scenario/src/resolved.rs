@@ -5,12 +5,10 @@ use std::fmt::Write as _;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::Subject;
+use crate::{Subject, study_tables};
 
 /// Keys of the top level on which no result of a method depends: words, the list of methods, how many trials there are, when it is checked.
 const ASIDE: [&str; 7] = ["why", "source", "notes", "method", "nightly", "trials", "sweep"];
-/// Tables that say what is made of points, and not how they come about.
-const ADJUSTED: [&str; 3] = ["calibration", "blocks", "block"];
 
 /// A scenario, or a cell of its sweep, as text: equal texts give equal results under one seed, from one code. Comments, order of keys and ways to write a number have no part
 /// in it.
@@ -25,8 +23,10 @@ pub struct Resolved {
 impl Resolved {
     /// That of the table of a file.
     pub(crate) fn of(root: &DeTable<'_>) -> Self {
-        let points = |key: &str| !ASIDE.contains(&key) && !ADJUSTED.contains(&key);
-        Self { points: text_of(root, points), adjusted: text_of(root, |key| ADJUSTED.contains(&key)) }
+        // What is made of points is not how they come about.
+        let adjusted = |key: &str| study_tables::keys().any(|other| other == key);
+        let points = |key: &str| !ASIDE.contains(&key) && !adjusted(key);
+        Self { points: text_of(root, points), adjusted: text_of(root, adjusted) }
     }
 
     /// With the camera that was read from a file, if one was.

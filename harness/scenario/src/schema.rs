@@ -7,23 +7,23 @@ use calibench_model::TargetKind;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
-use super::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
-use super::calibration::wire::{CalibrationWire, CheckWire};
 use super::camera::{CameraWire, LocalWire};
 use super::figure::FigureWire;
 use super::judgement::JudgementWire;
 use super::optics::OpticsWire;
 use super::pointing::{BoardPointingWire, HarrisWire};
-use super::printed::wire as printed_wire;
-use super::recognition::{ImagesWire, RecognitionWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
+use super::studies::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
+use super::studies::network::wire::{CalibrationWire, CheckWire};
+use super::studies::printed::wire as printed_wire;
+use super::studies::recognition::wire::{ImagesWire, RecognitionWire};
+use super::studies::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::sweep::wire::SweepWire;
 use super::testfield::boards::wire::{
     AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, DottedWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire,
 };
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
-use super::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
 
 /// The schema, with the methods of `registry` and their parameters.

@@ -8,7 +8,8 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::section::Section;
-use super::transfer::{self, Site};
+use super::studies::transfer::{self, Site};
+use super::subject::Study;
 use super::{Resolved, Scenario, Subject, ViewsSubject};
 
 /// Where other scenarios are found, and how they are read.
@@ -40,7 +41,8 @@ impl Surroundings<'_> {
         let mut found = found.into_iter();
         let views = found.next()?;
         let board = found.next().map(|board| Box::new(ViewsSubject { camera: views.camera, ..board }));
-        Some(ViewsSubject { transfer: Some(transfer), board, ..views })
+        // Whatever the scenario makes of its points and images: here nothing is measured.
+        Some(ViewsSubject { recognition: None, study: Study::Transfer { plan: Box::new(transfer), board }, ..views })
     }
 
     /// The views of the scenario in `file`, or what is wrong with it.

@@ -15,11 +15,13 @@ use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
 use crate::camera::LocalPlan;
-use crate::recognition::RECOGNITION;
-use crate::{
-    Blocks, Calibration, Detector, HarrisPointing, Imaging, JudgementPlan, Phase, Pixels, Pointing, Printed, Recognition, StationPlan,
-    Transfer, Unit,
-};
+use crate::studies::blocks::Blocks;
+use crate::studies::network::Calibration;
+use crate::studies::printed::Printed;
+use crate::studies::recognition::{RECOGNITION, Recognition};
+use crate::studies::transfer::Transfer;
+use crate::studies::{Points, StudyPlan};
+use crate::{Detector, HarrisPointing, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
 
 /// What a scenario measures.
 pub enum Subject {
@@ -34,23 +36,36 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// The kind of every target that may be measured: none where coordinates are drawn for calibrations that are applied elsewhere.
+    /// What is made of it.
+    pub fn study(&self) -> &dyn StudyPlan {
+        match self {
+            Self::Scene(_) | Self::Photographs(_) => &Points,
+            Self::Views(subject) => subject.study.plan(),
+            Self::Printed(printed) => &**printed,
+        }
+    }
+
+    /// Whether image points are measured, and not figures made by methods of its own.
+    pub fn is_measured(&self) -> bool {
+        self.study().own_methods().is_none()
+    }
+
+    /// The kind of every target that may be measured: none where no image points are.
     pub fn kinds(&self) -> Vec<TargetKind> {
         match self {
+            _ if !self.is_measured() => Vec::new(),
             Self::Scene(subject) => subject.scene.targets.iter().map(|target| target.kind).collect(),
-            Self::Views(subject) if subject.transfer.is_some() => Vec::new(),
             Self::Views(subject) => subject.field.targets.iter().map(|target| target.kind).collect(),
             Self::Photographs(_) => vec![TargetKind::ChessCorner],
             Self::Printed(_) => Vec::new(),
         }
     }
 
-    /// The sets of figures that its records have, if they have any.
+    /// The sets of figures that its records have, if they have any: of its study, then the counts of recognition.
     pub fn sets(&self) -> Vec<String> {
         match self {
             Self::Views(subject) => subject.sets(),
-            Self::Printed(printed) => printed.sets(),
-            Self::Scene(_) | Self::Photographs(_) => Vec::new(),
+            Self::Scene(_) | Self::Photographs(_) | Self::Printed(_) => self.study().sets(),
         }
     }
 }
@@ -119,26 +134,66 @@ pub struct ViewsSubject {
     pub clipped: bool,
     /// What finds them in place of a hand.
     pub detector: Option<Detector>,
-    /// What is done with the measured points of every trial, if more than scoring them.
-    pub calibration: Option<Calibration>,
-    /// The free networks that are made of them, in place of that.
-    pub blocks: Option<Blocks>,
     /// What recognises the field in its images, where measuring starts from that in place of a hand.
     pub recognition: Option<Recognition>,
-    /// The calibrations that are applied here, in place of measuring.
-    pub transfer: Option<Transfer>,
-    /// The board from which they are made, with its lens, sensor and hand, and the camera of these views.
-    pub board: Option<Box<ViewsSubject>>,
+    /// What is made of the measured points of every trial.
+    pub study: Study,
+}
+
+/// What is made of the points that are measured in views: one of the studies.
+#[derive(Clone, Debug)]
+pub enum Study {
+    /// Each is scored against the truth.
+    Points,
+    /// They are adjusted with control, and the camera is scored.
+    Network(Box<Calibration>),
+    /// Free networks are made of them.
+    Blocks(Box<Blocks>),
+    /// Nothing is measured: calibrations that are made elsewhere are applied here.
+    Transfer {
+        /// Which, and how.
+        plan: Box<Transfer>,
+        /// The board from which they are made, with its lens, sensor and hand, and the camera of these views.
+        board: Option<Box<ViewsSubject>>,
+    },
+}
+
+impl Study {
+    /// What it says of itself.
+    pub fn plan(&self) -> &dyn StudyPlan {
+        match self {
+            Self::Points => &Points,
+            Self::Network(plan) => &**plan,
+            Self::Blocks(plan) => &**plan,
+            Self::Transfer { plan, .. } => &**plan,
+        }
+    }
+
+    /// The adjustment with control, if it is one.
+    pub fn network(&self) -> Option<&Calibration> {
+        if let Self::Network(plan) = self { Some(plan) } else { None }
+    }
+
+    /// The calibrations that are applied, if it is of those.
+    pub fn transfer(&self) -> Option<&Transfer> {
+        if let Self::Transfer { plan, .. } = self { Some(plan) } else { None }
+    }
 }
 
 impl ViewsSubject {
-    /// The sets of figures that its records have, if they have any: of parameters, of blocks and recognition, or of ways to apply calibrations.
+    /// The sets of figures that its records have, if they have any: of its study, then the counts of recognition.
     pub fn sets(&self) -> Vec<String> {
-        let calibration = self.calibration.iter().flat_map(|calibration| calibration.sets.iter().map(|set| set.name.clone()));
-        let blocks = self.blocks.iter().flat_map(Blocks::names);
         let recognition = self.recognition.iter().map(|_| RECOGNITION.to_owned());
-        let transfer = self.transfer.iter().flat_map(Transfer::sets);
-        calibration.chain(blocks).chain(recognition).chain(transfer).collect()
+        self.study.plan().sets().into_iter().chain(recognition).collect()
+    }
+
+    /// Whether the points of all trials are kept, and not those of the first alone.
+    pub fn keeps_points(&self) -> bool {
+        match self.study {
+            // What is counted of all trials is in their figures.
+            Study::Points => self.recognition.is_none(),
+            Study::Network(_) | Study::Blocks(_) | Study::Transfer { .. } => self.study.plan().keeps_points(),
+        }
     }
 
     /// Whether the truth is another in each trial: stations that move, or a camera that distorts otherwise.

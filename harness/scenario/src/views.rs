@@ -14,6 +14,7 @@ use super::camera::CameraPlan;
 use super::pointing::BoardPointing;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
+use super::subject::Study;
 use super::{Detector, Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
 
 /// Where a detector points.
@@ -153,11 +154,8 @@ impl<'i> ViewTables<'i> {
             hand,
             clipped,
             detector,
-            calibration: None,
-            blocks: None,
             recognition: None,
-            transfer: None,
-            board: None,
+            study: Study::Points,
         })
     }
 }

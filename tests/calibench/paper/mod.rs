@@ -110,7 +110,7 @@ fn what_is_quoted_stands_in_the_examples() {
         assert!(example.contains(&block), "{file} does not contain\n{block}");
         quoted += 1;
     }
-    assert_eq!(quoted, 4);
+    assert_eq!(quoted, 5);
 }
 
 #[test]

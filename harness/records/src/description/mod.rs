@@ -1,6 +1,7 @@
 //! A scenario as its pages tell it: what a report needs of it, beside the records of its run.
 
 mod printed;
+mod study;
 mod sweep;
 mod views;
 
@@ -10,8 +11,9 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
+pub use study::{Adjustment, Blocks, Study};
 pub use sweep::{Axis, Cell, Sweep, Value};
-pub use views::{Adjustment, Blocks, Role, Room, Station, Target, Views};
+pub use views::{Role, Room, Station, Target, Views};
 
 /// A scenario: its words, what was to be run, and what its pages draw. That of a sweep is of its first cell but for the sweep itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,27 +41,11 @@ pub struct Description {
     pub finders: Vec<String>,
     /// The label of each operator with all parameters at their defaults, by the operator's name.
     pub defaults: BTreeMap<String, String>,
-    /// What is measured.
-    pub subject: Subject,
+    /// What is measured, and what is made of it.
+    #[serde(rename = "subject")]
+    pub study: Study,
     /// What is swept, if anything.
     pub sweep: Option<Sweep>,
-}
-
-/// What a scenario measures.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Subject {
-    /// A rendered scene.
-    Scene,
-    /// Views of a testfield.
-    Views(Box<Views>),
-    /// Photographs, of which no truth is known.
-    Photographs {
-        /// Calibrations from them are judged.
-        judged: bool,
-    },
-    /// Figures that were printed: nothing is measured.
-    Printed(Box<Printed>),
 }
 
 impl Description {
@@ -70,14 +56,12 @@ impl Description {
 
     /// The views of an adjusted scenario and what its adjustment is told.
     pub fn adjusted(&self) -> Option<(&Views, &Adjustment)> {
-        let Subject::Views(views) = &self.subject else { return None };
-        Some((views, views.adjustment.as_ref()?))
+        if let Study::Network(views, told) = &self.study { Some((views, told)) } else { None }
     }
 
     /// The views of a scenario with free networks and what these are told.
     pub fn in_blocks(&self) -> Option<(&Views, &Blocks)> {
-        let Subject::Views(views) = &self.subject else { return None };
-        Some((views, views.blocks.as_ref()?))
+        if let Study::Blocks(views, told) = &self.study { Some((views, told)) } else { None }
     }
 
     /// Whether the method of `label` measures points from starts, as those do that are compared with each other: it neither returns its start nor finds the board by itself.
@@ -127,23 +111,8 @@ pub fn read(input: impl Read) -> Result<Description, serde_json::Error> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn what_is_written_is_read_again_to_the_last_bit() {
-        let station = Station { name: "1".into(), centre: [0.1 + 0.2, -1.0 / 3.0, 1e-17], sight: [0.0, 5e-324, -1.0], second_step: true };
-        let target =
-            Target { id: "a".into(), kind: "cross".into(), surveyed: [123.456_789_012_345_67, 2.0, 1e300], role: Some(Role::Control) };
-        let views = Views {
-            size: [4000, 3000],
-            unit: "m".into(),
-            extent: Some([[-1.0; 3], [1.0; 3]]),
-            normal: None,
-            stations: vec![station],
-            targets: vec![target],
-            adjustment: Some(Adjustment { pitch_um: 3.9, drawn: true }),
-            blocks: Some(Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }),
-            room: Some(Room { least: 0.1 + 0.2, middle: 1.0 / 3.0 }),
-        };
-        let description = Description {
+    fn described(study: Study) -> Description {
+        Description {
             why: "To see \"this\".\n".into(),
             source: "a test".into(),
             notes: vec!["$x$".into()],
@@ -154,50 +123,75 @@ mod tests {
             finders: Vec::new(),
             methods: vec!["forstner:window=15".into()],
             defaults: [("forstner".into(), "forstner:window=11".into())].into(),
-            subject: Subject::Views(Box::new(views)),
+            study,
             sweep: None,
-        };
-        let mut text = Vec::new();
-        write(&mut text, &description).unwrap();
-        assert_eq!(read(&text[..]).unwrap(), description);
+        }
+    }
+
+    fn views(role: Option<Role>) -> Box<Views> {
+        let station = Station { name: "1".into(), centre: [0.1 + 0.2, -1.0 / 3.0, 1e-17], sight: [0.0, 5e-324, -1.0], second_step: true };
+        Box::new(Views {
+            size: [4000, 3000],
+            unit: "m".into(),
+            extent: Some([[-1.0; 3], [1.0; 3]]),
+            normal: None,
+            stations: vec![station],
+            targets: vec![Target { id: "a".into(), kind: "cross".into(), surveyed: [123.456_789_012_345_67, 2.0, 1e300], role }],
+            room: Some(Room { least: 0.1 + 0.2, middle: 1.0 / 3.0 }),
+        })
+    }
+
+    const TOLD: Adjustment = Adjustment { pitch_um: 3.9, drawn: true };
+
+    fn blocks() -> Blocks {
+        Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_to_the_last_bit() {
+        let (control, check) = (Some(Role::Control), Some(Role::Check));
+        let of_views = [
+            Study::Views(views(None)),
+            Study::Network(views(control), TOLD),
+            Study::Blocks(views(None), blocks()),
+            Study::Transfer(views(check)),
+        ];
+        for study in [Study::Scene, Study::Photographs { judged: true }].into_iter().chain(of_views) {
+            let description = described(study);
+            let mut text = Vec::new();
+            write(&mut text, &description).unwrap();
+            assert_eq!(read(&text[..]).unwrap(), description);
+        }
+        let description = described(Study::Scene);
         assert!(
             description.is_default("forstner:window=11") && !description.is_default("forstner:window=15") && !description.is_default("x")
         );
         assert!(read(&b"{}"[..]).is_err());
     }
 
+    /// The keys of files are older than the list of studies.
+    #[test]
+    fn a_file_tells_a_study_by_its_key_and_has_one_at_most() {
+        let file = |study| serde_json::to_value(described(study)).unwrap();
+        assert_eq!(file(Study::Scene)["subject"], "scene");
+        let of = |study| file(study)["subject"]["views"].clone();
+        let (plain, network, blocks) = (Study::Views(views(None)), Study::Network(views(None), TOLD), Study::Blocks(views(None), blocks()));
+        let (plain, [network, blocks]) = (of(plain), [network, blocks].map(of));
+        assert!(plain["adjustment"].is_null() && plain["blocks"].is_null() && plain.get("study").is_none());
+        assert!(network["adjustment"]["pitch_um"] == 3.9 && network["blocks"].is_null());
+        let mut both = file(Study::Network(views(None), TOLD));
+        both["subject"]["views"]["blocks"] = blocks["blocks"].clone();
+        let error = serde_json::from_value::<Description>(both).unwrap_err().to_string();
+        assert!(error.contains("`blocks` beside `adjustment`"), "{error}");
+    }
+
     #[test]
     fn an_adjusted_scenario_has_views_and_an_adjustment() {
-        let views = |adjustment| Views {
-            size: [4, 3],
-            unit: "mm".into(),
-            extent: None,
-            normal: None,
-            stations: Vec::new(),
-            targets: Vec::new(),
-            adjustment,
-            blocks: None,
-            room: None,
-        };
-        let of = |subject| Description {
-            why: String::new(),
-            source: String::new(),
-            notes: Vec::new(),
-            seed: 1,
-            trials: 1,
-            bound_window: 11,
-            bound_window_discs: None,
-            finders: Vec::new(),
-            methods: Vec::new(),
-            defaults: BTreeMap::new(),
-            subject,
-            sweep: None,
-        };
-        let adjustment = Adjustment { pitch_um: 3.9, drawn: false };
-        let adjusted = of(Subject::Views(Box::new(views(Some(adjustment)))));
-        assert_eq!(adjusted.adjusted(), Some((&views(Some(adjustment)), &adjustment)));
-        for subject in [Subject::Scene, Subject::Photographs { judged: true }, Subject::Views(Box::new(views(None)))] {
-            assert_eq!(of(subject).adjusted(), None);
+        assert_eq!(described(Study::Network(views(None), TOLD)).adjusted(), Some((&*views(None), &TOLD)));
+        assert_eq!(described(Study::Blocks(views(None), blocks())).in_blocks(), Some((&*views(None), &blocks())));
+        for study in [Study::Scene, Study::Photographs { judged: true }, Study::Views(views(None)), Study::Transfer(views(None))] {
+            let description = described(study);
+            assert!(description.adjusted().is_none() && description.in_blocks().is_none());
         }
     }
 

@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A testfield and its stations: those of the first trial where they change. Object space is right-handed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Views {
     /// Columns and rows of an image, px.
     pub size: [u32; 2],
@@ -18,12 +17,7 @@ pub struct Views {
     pub stations: Vec<Station>,
     /// In the order of the testfield.
     pub targets: Vec<Target>,
-    /// What an adjustment of the measured points is told, if one is made.
-    pub adjustment: Option<Adjustment>,
-    /// What free networks of the measured points are told, if there are any.
-    pub blocks: Option<Blocks>,
     /// How much room a target has before something else begins, where that is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub room: Option<Room>,
 }
 
@@ -73,26 +67,4 @@ pub enum Role {
     Control,
     /// A check point.
     Check,
-}
-
-/// What the adjustment of the measured points is told.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Adjustment {
-    /// The pixel pitch, um.
-    pub pitch_um: f64,
-    /// Image coordinates are drawn at random, no image is rendered.
-    pub drawn: bool,
-}
-
-/// What free networks of the measured points are told.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Blocks {
-    /// The pixel pitch, um.
-    pub pitch_um: f64,
-    /// Pairs of images whose residuals are compared, by their names.
-    pub pairs: Vec<[String; 2]>,
-    /// The blocks whose residuals these are.
-    pub compared: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use calibench_records::description::{Description, Subject, is_limited};
+use calibench_records::description::{Description, is_limited};
 use calibench_records::results::MethodInfo;
 use calibench_records::score::Groups;
 
@@ -11,8 +11,8 @@ pub const MOST_TARGETS: usize = 24;
 
 /// The kinds of a testfield's targets, if there are too many to be listed one by one.
 pub fn groups(scenario: &Description) -> Groups {
-    match &scenario.subject {
-        Subject::Views(views) if views.targets.len() > MOST_TARGETS => {
+    match scenario.study.views() {
+        Some(views) if views.targets.len() > MOST_TARGETS => {
             views.targets.iter().map(|target| (target.id.as_str().into(), target.kind.as_str().into())).collect()
         }
         _ => Groups::new(),

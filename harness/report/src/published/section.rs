@@ -1,6 +1,6 @@
 //! The section of a published table: its cells beside ours, what was found out, every method.
 
-use calibench_records::description::Subject;
+use calibench_records::description::Study;
 
 use super::adjustment::ours;
 use super::figure::Ours;
@@ -70,7 +70,7 @@ fn adjustments(table: &Table, main: &Loaded) -> Compared {
 
 /// Whether nothing was measured, so that there are no runs which differ.
 fn is_of_print(main: &Loaded) -> bool {
-    matches!(main.scenario.subject, Subject::Printed(_))
+    matches!(main.scenario.study, Study::Printed(_))
 }
 
 fn first(figures: &[Option<Ours>]) -> Vec<Option<f64>> {

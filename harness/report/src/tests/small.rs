@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_model::{PixelPoint, Rejection};
 use calibench_records::compressor::Compressor;
-use calibench_records::description::{self, Description, Subject};
+use calibench_records::description::{self, Description, Study};
 use calibench_records::figures::{FigureName, Group, Units};
 use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
@@ -88,7 +88,7 @@ fn description() -> Description {
         finders: Vec::new(),
         methods: vec!["pixel".into(), "centroid:window=15".into()],
         defaults: [("pixel".into(), "pixel".into()), ("centroid".into(), "centroid:window=15".into())].into(),
-        subject: Subject::Scene,
+        study: Study::Scene,
         sweep: None,
     }
 }

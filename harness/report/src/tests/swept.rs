@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use calibench_records::description::{self, Axis, Description, Subject, Sweep, Value};
+use calibench_records::description::{self, Axis, Description, Study, Sweep, Value};
 use calibench_records::score::{Errors, Score};
 
 use crate::load::sweep::{LoadedCell, LoadedMethod};
@@ -36,7 +36,7 @@ pub fn loaded() -> LoadedSweep {
         finders: Vec::new(),
         methods: Vec::new(),
         defaults: BTreeMap::new(),
-        subject: Subject::Scene,
+        study: Study::Scene,
         sweep: None,
     };
     let other = score(&[(9.0, 9.0)], 0);

@@ -8,7 +8,7 @@ use calibench_model::{PixelPoint, Pose, Testfield};
 use calibench_records::figures::Quantity;
 use calibench_records::results::{Figure, Trial, find};
 use calibench_run::Plan;
-use calibench_run::network::{ImagePoint, Job, Observed, Wanted, adjusted};
+use calibench_run::studies::network::{ImagePoint, Job, Observed, Wanted, adjusted};
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 
 use crate::drawn::{Check, Drawn, Noise};
@@ -70,7 +70,7 @@ pub fn screened(drawn: &Drawn) -> Option<Screened> {
 
 /// Standard deviations of the camera at the truth, for a standard deviation of unit weight of one.
 fn cofactors(views: &ViewsSubject, seen: &[Vec<usize>]) -> Option<[f64; 4]> {
-    let mut calibration = views.calibration.clone()?;
+    let mut calibration = views.study.network().cloned()?;
     let Camera::Photogrammetric(truth) = views.camera else { return None };
     calibration.start = truth;
     let job = Job { calibration: &calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };

@@ -86,8 +86,7 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
         ("arithmetic", arithmetic()),
     ];
     let apart = plan.is_adjusted_apart();
-    let whole = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
-    let methods = if whole {
+    let methods = if !plan.scenario.subject.is_measured() {
         vec![together(plan, reuse, &common, &trials)]
     } else {
         plan.available().into_iter().map(|method| of_method(plan, reuse, &common, (&trials, apart), method)).collect()
@@ -131,7 +130,7 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
 fn may_be_bounded(subject: &Subject) -> bool {
     match subject {
         Subject::Scene(_) => true,
-        Subject::Views(views) => views.calibration.as_ref().is_none_or(|calibration| calibration.drawn.is_none()),
+        Subject::Views(views) => views.study.plan().drawn().is_none(),
         Subject::Photographs(_) | Subject::Printed(_) => false,
     }
 }

@@ -3,6 +3,7 @@
 mod blocks;
 mod boards;
 mod drawn;
+mod example;
 mod kinds;
 mod network;
 mod recordings;

@@ -9,12 +9,12 @@ use calibench_scenario::Calibration;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::{EXACT, KEY, scenario, trials, views};
-use crate::network::{Job, Observed, Wanted, adjusted, angles, check, control_point, draw, observe, resections};
+use crate::studies::network::{Job, Observed, Wanted, adjusted, angles, check, control_point, draw, observe, resections};
 
 fn with_job(test: impl FnOnce(&Job<'_>, &[PointResult])) {
     let scenario = scenario(&[]);
     let views = views(&scenario);
-    let calibration = views.calibration.as_ref().unwrap();
+    let calibration = views.study.network().unwrap();
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
     test(&job, &trials(&scenario, 3)[0].points);
 }
@@ -175,7 +175,7 @@ fn what_is_observed_is_what_was_measured_with_the_errors_of_the_scenario() {
     });
     let noisy = scenario(&[("sigma_px = 0.4", "sigma_px = 0.4\nfloor_px = 0.3\nsurvey_sigma = 0.002"), ("control_sigma = 0.0005\n", "")]);
     let views = views(&noisy);
-    let calibration = views.calibration.as_ref().unwrap();
+    let calibration = views.study.network().unwrap();
     let job = Job { calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
     let points = &trials(&noisy, 3)[0].points;
     let (mut floors, mut surveys) = (Vec::new(), Vec::new());

@@ -16,12 +16,7 @@ use crate::store::{RecordsFolder, SweepPlan, run, run_sweep};
 use crate::{Plan, RunError};
 
 fn stored(records: &Path, scenario: &Scenario) -> Result<u64, RunError> {
-    run(
-        &RecordsFolder::open(records, &scenario.name, None)?,
-        &mut Plan::new(scenario, crate::Tools::default(), PathBuf::new()),
-        "r1",
-        &|| (),
-    )
+    run(&RecordsFolder::open(records, &scenario.name, None)?, &Plan::new(scenario, crate::Tools::default(), PathBuf::new()), "r1", &|| ())
 }
 
 /// Names and contents of all files below a folder.
@@ -124,7 +119,7 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
         registry: &registry,
         stop: None,
     };
-    let plan = SweepPlan { order, sweep: scenario.sweep.as_ref().unwrap() };
+    let plan = SweepPlan { order: &order, sweep: scenario.sweep.as_ref().unwrap() };
     let parent = tempfile::tempdir().unwrap();
     let steps = std::sync::atomic::AtomicU64::new(0);
     let count = || {
@@ -158,19 +153,19 @@ fn records_are_the_same_with_a_store_and_left_where_they_are_right() {
     let scenario = super::views::coded();
     let place = |parent: &Path| RecordsFolder::open(parent, NAME, None).unwrap();
     let plain = tempfile::tempdir().unwrap();
-    run(&place(plain.path()), &mut Plan::new(&scenario, crate::Tools::default(), PathBuf::new()), "r1", &|| ()).unwrap();
+    run(&place(plain.path()), &Plan::new(&scenario, crate::Tools::default(), PathBuf::new()), "r1", &|| ()).unwrap();
     let expected = files(plain.path());
     assert!(expected.keys().filter(|name| is_image(name)).count() > 1, "{:?}", expected.keys());
     let (kept, parent) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let again = |asked: Option<&[usize]>| {
         let (store, tally) = (calibench_store::Store::open(kept.path(), 1 << 30, false), crate::reuse::Tally::default());
         let reuse = Some(crate::reuse::Reuse { store: &store, program: "p", tally: &tally });
-        let mut plan = Plan { asked, reuse, ..Plan::new(&scenario, crate::Tools::default(), PathBuf::new()) };
+        let plan = Plan { asked, reuse, ..Plan::new(&scenario, crate::Tools::default(), PathBuf::new()) };
         if asked.is_some() {
             // For its entries alone.
             crate::reuse::run(&plan, &|| (), &mut |_| Ok(())).unwrap();
         } else {
-            run(&place(parent.path()), &mut plan, "r1", &|| ()).unwrap();
+            run(&place(parent.path()), &plan, "r1", &|| ()).unwrap();
             assert!(files(parent.path()) == expected);
         }
         [tally.found(), tally.computed(), tally.unchanged()]

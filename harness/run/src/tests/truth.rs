@@ -9,7 +9,6 @@ use calibench_exchange::{read_control, read_stations};
 use calibench_files::{NewFolder, OutputFolder};
 use calibench_model::TargetKind;
 use calibench_model::camera::CameraModel;
-use calibench_records::description;
 use calibench_synth::sensor::Clipped;
 
 use super::boards::board;
@@ -73,8 +72,8 @@ fn the_room_of_a_board_is_the_drawing_on_paper() {
         assert!(found.iter().all(|row| (number(row, "room_px") - expected).abs() < 1e-6), "{expected} {:?}", found[0]);
     }
     // All are in view, so that the middle one of both rolls is the larger.
-    let description::Subject::Views(told) = crate::description::description(&scenario, &[]).subject else { panic!() };
-    let room = told.room.unwrap();
+    let told = crate::description::description(&scenario, &[]).study;
+    let room = told.views().unwrap().room.unwrap();
     assert!((room.least - expected[1]).abs() < 1e-6 && (room.middle - expected[0]).abs() < 1e-6, "{room:?}");
 }
 

@@ -67,7 +67,7 @@ fn kept_are_the_image_of_the_first_point_and_the_one_with_its_steps() {
     for threads in [1, 3] {
         let parent = tempfile::tempdir().unwrap();
         let folder = RecordsFolder::open(parent.path(), NAME, None).unwrap();
-        pool(threads).install(|| run(&folder, &mut Plan::new(&scenario, Tools::default(), ".".into()), "r", &|| ())).unwrap();
+        pool(threads).install(|| run(&folder, &Plan::new(&scenario, Tools::default(), ".".into()), "r", &|| ())).unwrap();
         let paths = std::fs::read_dir(parent.path().join(NAME)).unwrap().map(|entry| entry.unwrap().path());
         let images = paths.filter(|path| path.extension().is_some_and(|extension| extension == "png"));
         let kept: Vec<String> = images.map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect();

@@ -1,0 +1,125 @@
+//! The study of a scenario: what is made of what it shows, as pages need it.
+
+use serde::{Deserialize, Serialize};
+
+use super::printed::Printed;
+use super::views::{Room, Station, Target, Views};
+
+/// What is made of what a scenario shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Subject", into = "Subject")]
+pub enum Study {
+    /// The points of a rendered scene are scored, each against the truth.
+    Scene,
+    /// So are those of views of a testfield.
+    Views(Box<Views>),
+    /// They are adjusted with control.
+    Network(Box<Views>, Adjustment),
+    /// Free networks are made of them.
+    Blocks(Box<Views>, Blocks),
+    /// Nothing is measured: calibrations that are made elsewhere are applied here.
+    Transfer(Box<Views>),
+    /// Photographs, of which no truth is known.
+    Photographs {
+        /// Calibrations from them are judged.
+        judged: bool,
+    },
+    /// Figures that were printed: nothing is measured.
+    Printed(Box<Printed>),
+}
+
+impl Study {
+    /// The views of a testfield, if it is of such.
+    pub fn views(&self) -> Option<&Views> {
+        match self {
+            Self::Views(views) | Self::Network(views, _) | Self::Blocks(views, _) | Self::Transfer(views) => Some(views),
+            Self::Scene | Self::Photographs { .. } | Self::Printed(_) => None,
+        }
+    }
+}
+
+/// What the adjustment of the measured points is told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Adjustment {
+    /// The pixel pitch, um.
+    pub pitch_um: f64,
+    /// Image coordinates are drawn at random, no image is rendered.
+    pub drawn: bool,
+}
+
+/// What free networks of the measured points are told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Blocks {
+    /// The pixel pitch, um.
+    pub pitch_um: f64,
+    /// Pairs of images whose residuals are compared, by their names.
+    pub pairs: Vec<[String; 2]>,
+    /// The blocks whose residuals these are.
+    pub compared: Vec<String>,
+}
+
+/// A [`Study`] as files have it: by what is measured.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum Subject {
+    Scene,
+    Views(Box<WrittenViews>),
+    Photographs { judged: bool },
+    Printed(Box<Printed>),
+}
+
+/// [`Views`] with what is made of them.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenViews {
+    size: [u32; 2],
+    unit: String,
+    extent: Option<[[f64; 3]; 2]>,
+    normal: Option<[f64; 3]>,
+    stations: Vec<Station>,
+    targets: Vec<Target>,
+    adjustment: Option<Adjustment>,
+    blocks: Option<Blocks>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    room: Option<Room>,
+}
+
+impl TryFrom<Subject> for Study {
+    type Error = &'static str;
+
+    fn try_from(subject: Subject) -> Result<Self, Self::Error> {
+        let written = match subject {
+            Subject::Scene => return Ok(Self::Scene),
+            Subject::Photographs { judged } => return Ok(Self::Photographs { judged }),
+            Subject::Printed(printed) => return Ok(Self::Printed(printed)),
+            Subject::Views(written) => *written,
+        };
+        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, room } = written;
+        let views = Box::new(Views { size, unit, extent, normal, stations, targets, room });
+        match (adjustment, blocks) {
+            (Some(_), Some(_)) => Err("`blocks` beside `adjustment`: expected one of them"),
+            (Some(told), None) => Ok(Self::Network(views, told)),
+            (None, Some(told)) => Ok(Self::Blocks(views, told)),
+            // Where nothing is adjusted only calibrations that come from elsewhere have control and check points.
+            (None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
+            (None, None) => Ok(Self::Views(views)),
+        }
+    }
+}
+
+impl From<Study> for Subject {
+    fn from(study: Study) -> Self {
+        let (views, adjustment, blocks) = match study {
+            Study::Scene => return Self::Scene,
+            Study::Photographs { judged } => return Self::Photographs { judged },
+            Study::Printed(printed) => return Self::Printed(printed),
+            Study::Views(views) | Study::Transfer(views) => (views, None, None),
+            Study::Network(views, told) => (views, Some(told), None),
+            Study::Blocks(views, told) => (views, None, Some(told)),
+        };
+        let Views { size, unit, extent, normal, stations, targets, room } = *views;
+        Self::Views(Box::new(WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, room }))
+    }
+}

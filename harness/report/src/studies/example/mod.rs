@@ -1,0 +1,4 @@
+//! The worked example of CONTRIBUTING, linked from `examples/`.
+
+mod section;
+mod tests;
