@@ -72,6 +72,24 @@ fn the_findings_stand_in_the_reports() {
     }
 }
 
+/// The page of a paper is one screen: all its figures were run, what it shows and links to is there, and it is short.
+#[test]
+fn the_pages_of_papers_are_one_screen() {
+    let papers = calibench_report::published::papers(&root().join("reference/published"));
+    assert_eq!(papers.len(), 4);
+    for paper in papers {
+        let [first, predictions] = ["README.md", "predictions.md"].map(|name| Page::read(&format!("reports/{paper}/{name}")));
+        assert!(first.text.split_whitespace().count() < 800, "{paper}: {} words", first.text.split_whitespace().count());
+        assert_eq!(first.text.matches("![").count(), 1, "{paper}: one picture");
+        for page in [first, predictions] {
+            assert!(!page.text.contains("(not run here)"), "{}", page.name);
+            for link in page.links() {
+                assert!(root().join("reports").join(&paper).join(&link).is_file(), "{}: {link}", page.name);
+            }
+        }
+    }
+}
+
 /// The table of crates in the page on architecture is what Cargo knows.
 #[test]
 fn the_table_of_crates_is_that_of_cargo() {

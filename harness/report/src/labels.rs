@@ -30,7 +30,7 @@ const POINT: f64 = 9.0;
 const STEP: f64 = 7.0;
 
 /// A box of its `sizes` (width, height) for each of `points`, near it and within `area`: the nearest free place on growing rings, in the order given.
-/// `None` where the area has no room left.
+/// Points beyond the sizes keep their places free and have no box. `None` where the area has no room left.
 pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], area: Box2) -> Vec<Option<Box2>> {
     let mut taken: Vec<Box2> =
         points.iter().map(|(x, y)| Box2 { x: x - POINT, y: y - POINT, width: 2.0 * POINT, height: 2.0 * POINT }).collect();
