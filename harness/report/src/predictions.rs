@@ -8,11 +8,9 @@ use serde::Deserialize;
 
 use crate::first_screen::{NOT_RUN, Sources};
 use crate::markdown::{MarkdownTable, plain};
-use crate::published::{PublishedError, Range};
+use crate::published::{PREDICTIONS, PublishedError, Range};
 use crate::{LoadError, ReportError};
 
-/// The file beside the tables of a paper.
-const FILE: &str = "predictions.toml";
 /// An interval is at most this share of the distance between the two explanations.
 const SHARE: f64 = 1.0 / 3.0;
 
@@ -44,6 +42,9 @@ struct Stated {
     then: f64,
     /// What was measured, once it was.
     outcome: Option<f64>,
+    /// What was learned from it.
+    #[serde(default)]
+    learned: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -72,7 +73,7 @@ struct Prediction {
 /// # Errors
 /// A file or records that cannot be read, a figure that is not there, an interval that tells the two explanations not apart.
 pub fn page(family: &str, folder: &Path, sources: &Sources<'_>) -> Result<Option<String>, ReportError> {
-    let path = folder.join(FILE);
+    let path = folder.join(PREDICTIONS);
     let text = match calibench_files::bounded::text(&path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         text => text.map_err(|source| PublishedError::File { path: path.clone(), source })?,
@@ -108,20 +109,23 @@ fn stated(all: &[Stated]) -> Result<String, Problem> {
     if all.is_empty() {
         return Ok(String::new());
     }
+    let mut learned = String::new();
     let mut rows = MarkdownTable::new(&["photographs", "measured", "stated", "because", "if instead", "it would be", "outcome"]);
     for one in all {
         let [low, high] = *one.stated.get_ref();
         decides([low, high], 0.5 * (low + high), one.then, one.stated.span())?;
-        let outcome = one.outcome.map_or_else(
-            || "not measured yet".to_owned(),
-            |outcome| format!("{}: {}", plain(outcome), if (low..=high).contains(&outcome) { "as stated" } else { "not as stated" }),
-        );
+        let verdict = |outcome: f64| if (low..=high).contains(&outcome) { "as stated" } else { "not as stated" };
+        let outcome =
+            one.outcome.map_or_else(|| "not measured yet".to_owned(), |outcome| format!("{}: **{}**", plain(outcome), verdict(outcome)));
+        if !one.learned.is_empty() {
+            learned.push_str(&format!("\n{}\n", one.learned.trim()));
+        }
         let interval = format!("{} to {}", plain(low), plain(high));
         rows.row([&one.experiment, &one.measured, &interval, &one.because, &one.rival, &plain(one.then), &outcome].map(Clone::clone));
     }
     Ok(format!(
         "\n## On public photographs\n\nStated in a change of its own before the photographs were measured, the outcome in the next, whichever way it went. The photographs are no part of this project, so that \
-         these figures are in no record.\n\n{}",
+         these figures are in no record.\n\n{}{learned}",
         rows.render()
     ))
 }
@@ -186,8 +190,8 @@ mod tests {
             stated_of(&text)
         };
         assert!(of("[1.0, 2.0]", "").unwrap().contains("not measured yet"));
-        assert!(of("[1.0, 2.0]", "outcome = 1.5").unwrap().contains("1.50: as stated"));
-        assert!(of("[1.0, 2.0]", "outcome = 2.5").unwrap().contains("2.50: not as stated"));
+        assert!(of("[1.0, 2.0]", "outcome = 1.5").unwrap().contains("1.50: **as stated**"));
+        assert!(of("[1.0, 2.0]", "outcome = 2.5").unwrap().contains("2.50: **not as stated**"));
         assert!(of("[1.0, 4.0]", "").unwrap_err().message.contains("more than a third"));
     }
 
@@ -203,7 +207,7 @@ mod tests {
         assert!(page("p", folder.path(), &sources).unwrap().is_none());
         let text = "[[prediction]]\nexperiment = 'a wall'\nmeasured = 'px'\nours = 'OURS'\nbecause = 'a'\nrival = 'b'\nthen = '1'\n";
         let said = |ours: &str| {
-            std::fs::write(folder.path().join(FILE), text.replace("OURS", ours)).unwrap();
+            std::fs::write(folder.path().join(PREDICTIONS), text.replace("OURS", ours)).unwrap();
             page("p", folder.path(), &sources).map_or_else(|error| error.to_string(), Option::unwrap)
         };
         assert!(said("error p/s").contains(NOT_RUN), "{}", said("error p/s"));

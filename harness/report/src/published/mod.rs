@@ -25,6 +25,7 @@ pub(crate) use figure::of_points;
 pub use kind::Kind;
 pub use metric::Metric;
 pub(crate) use range::Range;
+pub(crate) use read::PREDICTIONS;
 pub use read::{PublishedError, papers, tables};
 pub use schema::schema;
 pub(crate) use section::{section, verdicts, without_records};

@@ -8,6 +8,9 @@ use thiserror::Error;
 
 use super::{Cell, Ensemble, EnsembleError, Table, rules};
 
+/// What stands beside tables and is none.
+pub const PREDICTIONS: &str = "predictions.toml";
+
 /// A table that cannot be read.
 #[derive(Debug, Error)]
 pub enum PublishedError {
@@ -37,7 +40,9 @@ pub fn tables(folder: &Path, paper: &str) -> Result<Vec<(String, Table)>, Publis
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         Err(source) => return Err(PublishedError::File { path: folder, source }),
         Ok(entries) => {
-            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect()
+            let is_table =
+                |path: &PathBuf| path.extension().is_some_and(|e| e == "toml") && path.file_name().is_some_and(|name| name != PREDICTIONS);
+            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_table).collect()
         }
     };
     names.sort();
@@ -141,7 +146,7 @@ mod tests {
         fs::create_dir(&paper).unwrap();
         let head = |title: &str| format!("title='{title}'\nsource='s'\nunit='px'\nscenario='a'\nmethod='m'\ncolumns=['C']\n");
         let text = |title: &str| head(title) + "[[cell]]\nrow='1'\ncolumn='C'\nprinted='2.5'\nmetric='mean_dx'\nkind='prediction'\n";
-        for (name, title) in [("table-2.toml", "second"), ("table-1.toml", "first"), ("notes.txt", "none")] {
+        for (name, title) in [("table-2.toml", "second"), ("table-1.toml", "first"), ("notes.txt", "none"), (PREDICTIONS, "none")] {
             fs::write(paper.join(name), text(title)).unwrap();
         }
         let found = tables(folder.path(), "paper").unwrap();
