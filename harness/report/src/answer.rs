@@ -260,7 +260,7 @@ mod tests {
         let cells = vec![Cell::bare("1", Metric::Figure), Cell { row: "s".into(), ..Cell::bare("1", Metric::Figure) }];
         let table = Table { title: "Table 1: x".into(), cells, ..Table::bare() };
         answers.table("table-1", &table, &[Verdict::Reproduces, Verdict::Differs]);
-        assert!(answers.paragraph().starts_with("Of 2 printed figures 2 are predictions, of which 1 come out."), "{}", answers.paragraph());
+        assert!(answers.paragraph().starts_with("Of 2 printed figures 2 are predictions, of which 1 come out;"), "{}", answers.paragraph());
         assert!(!answers.paragraph().contains("Least error"), "who leads is another question");
         assert!(answers.counted().contains("| [Table 1: x](#table-1-x) |     1 of 2 |"), "{}", answers.counted());
     }

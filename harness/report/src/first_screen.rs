@@ -118,7 +118,13 @@ impl Sources<'_> {
         let place = table.cells.iter().position(|cell| cell.row == row && cell.column == column)?;
         let cell = &table.cells[place];
         let digits = Printed::parse(&cell.printed).map_or(3, |printed| (-printed.unit.log10()).round().max(0.0) as usize + 1);
-        Some((cell.printed.clone(), figures.get(place).copied().flatten().map(|ours| fixed(ours, digits))))
+        let like = |ours: f64| match cell.printed.contains('/') {
+            true if ours > 0.0 => format!("1/{:.0}", 1.0 / ours),
+            // A count is one.
+            _ if digits == 1 && ours.fract() == 0.0 => fixed(ours, 0),
+            _ => fixed(ours, digits),
+        };
+        Some((cell.printed.clone(), figures.get(place).copied().flatten().map(like)))
     }
 
     /// The mean over all trials, with half its 95 % interval where there are several.
@@ -186,9 +192,10 @@ mod tests {
     use crate::published::{Cell, Metric};
 
     fn said(text: &str) -> Result<String, String> {
-        let cell = Cell { row: "a".into(), column: "c".into(), ..Cell::bare("0.5", Metric::Figure) };
-        let table = Table { cells: vec![cell], ..Table::bare() };
-        let sources = Sources { tables: vec![("table-1", &table, vec![Some(0.5123)])], runs: Vec::new(), sweeps: Vec::new() };
+        let cell = |row: &str, printed: &str| Cell { row: row.into(), column: "c".into(), ..Cell::bare(printed, Metric::Figure) };
+        let table = Table { cells: vec![cell("a", "0.5"), cell("count", "7"), cell("part", "1/20")], ..Table::bare() };
+        let sources =
+            Sources { tables: vec![("table-1", &table, vec![Some(0.5123), Some(8.0), Some(0.04)])], runs: Vec::new(), sweeps: Vec::new() };
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(FILE), text).unwrap();
         sources.first_screen(folder.path()).map(Option::unwrap).map_err(|error| error.to_string())
@@ -198,6 +205,7 @@ mod tests {
     fn figures_are_those_of_tables_and_records() {
         let text = "Printed {printed table-1 | a | c}, ours {ours table-1 | a | c}.\n";
         assert_eq!(said(text).unwrap(), "Printed 0.5, ours 0.51.\n");
+        assert_eq!(said("{ours table-1 | count | c} and {ours table-1 | part | c}").unwrap(), "8 and 1/25");
         assert_eq!(said("Of 12 points in 1988.\n").unwrap(), "Of 12 points in 1988.\n");
         assert_eq!(said("One {figure s | m | set | check | rmse_xy}.\n").unwrap(), format!("One {NOT_RUN}.\n"));
     }

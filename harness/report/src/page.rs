@@ -143,9 +143,9 @@ impl Page {
                 }
                 if let Some(figures) = scene_figures::figures(loaded) {
                     self.text.push_str(&format!(
-                        "The image of the first trial with truth, approximate positions and the results of one method, and {}, with all results:\n\n\
-                         ![Image, approximations and truth]({stem}.png)\n\n![Targets with all results]({stem}-targets.png)\n\n",
-                        figures.shown
+                        "The image of the first trial with {0}, and {1}, with all results:\n\n\
+                         ![The image with {0}]({stem}.png)\n\n![Targets with all results]({stem}-targets.png)\n\n",
+                        figures.marked, figures.shown
                     ));
                     self.pictures.push((format!("{stem}.png"), figures.overview));
                     self.pictures.push((format!("{stem}-targets.png"), figures.panels));
@@ -167,7 +167,7 @@ impl Page {
         let (counted, led) = (self.answers.counted(), self.answers.led());
         let whole = |title: &str, before: &str, body: &str| format!("# {title}\n\n{before}{}{}\n", contents(body), body.trim_end());
         let predicted = if self.predictions.is_some() {
-            format!(" [Predictions]({PREDICTIONS}) of experiments that nobody made yet.")
+            format!(" [Predictions]({PREDICTIONS}) of experiments that the paper did not make.")
         } else {
             String::new()
         };

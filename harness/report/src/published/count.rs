@@ -20,7 +20,9 @@ pub struct Counts {
 impl Figures {
     /// Adds the verdicts of the cells of the table in the file `name`. Of the verdicts on one figure that of the kind with most evidence counts, and of these the gravest.
     pub fn add(&mut self, name: &str, table: &Table, verdicts: &[Verdict]) {
-        for (cell, verdict) in table.cells.iter().zip(verdicts) {
+        // Words are no figures.
+        let figures = table.cells.iter().zip(verdicts).filter(|(cell, _)| cell.printed.contains(|c: char| c.is_ascii_digit()));
+        for (cell, verdict) in figures {
             let own = || Place { table: name.to_owned(), row: cell.row.clone(), column: cell.column.clone() };
             let place = cell.same_as.clone().unwrap_or_else(own);
             let kind = cell.kind.filter(|_| !matches!(verdict, Verdict::NotComparable(_)));
@@ -58,30 +60,20 @@ impl Counts {
         self.not_comparable + self.judged.iter().map(|(comes, fails)| comes + fails).sum::<usize>()
     }
 
-    /// Predictions first, the others beside them, as in "Of 9 printed figures none is a prediction. Of consequences of fitted figures 3 of 4 come out. 5 are not comparable."
+    /// Predictions first, the others beside them, as in "Of 9 printed figures none is a prediction. Of 4 consequences of fitted figures 3 come out; 5 are not comparable."
     pub fn sentence(&self) -> String {
         let [(comes, fails), others @ ..] = self.judged;
-        let mut text = match comes + fails {
-            0 => format!("Of {} printed figures none is a prediction.", self.all()),
-            1 => format!(
-                "Of {} printed figures one is a prediction, and {}.",
-                self.all(),
-                if comes == 1 { "comes out" } else { "does not come out" }
-            ),
-            all => format!("Of {} printed figures {all} are predictions, of which {comes} come out.", self.all()),
+        let predicted = match comes + fails {
+            0 => "none is a prediction".to_owned(),
+            1 => format!("one is a prediction, and {}", if comes == 1 { "comes out" } else { "does not come out" }),
+            all => format!("{all} are predictions, of which {comes} come out"),
         };
         let names = ["consequences of fitted figures", "reconstructions", "definitions and arithmetic"];
-        let told: Vec<String> = names
-            .iter()
-            .zip(others)
-            .filter(|(_, (comes, fails))| comes + fails > 0)
-            .map(|(name, (comes, fails))| format!("of {} {name} {comes}", comes + fails))
-            .collect();
-        if !told.is_empty() {
-            text.push_str(&format!(" Beside it come out {}.", told.join(", ")));
-        }
-        text.push_str(&format!(" {} are not comparable.", self.not_comparable));
-        text
+        let told = names.iter().zip(others).filter(|(_, (comes, fails))| comes + fails > 0);
+        let mut told = told.map(|(name, (comes, fails))| format!("of {} {name} {comes}", comes + fails));
+        let first = told.next().map_or_else(String::new, |first| format!(". O{} come out", &first[1..]));
+        let rest: String = told.map(|more| format!(", {more}")).collect();
+        format!("Of {} printed figures {predicted}{first}{rest}; {} are not comparable.", self.all(), self.not_comparable)
     }
 }
 
@@ -126,14 +118,15 @@ mod tests {
             (cell("b", Kind::Prediction, None), Reproduces),
             (cell("c", Kind::Consequence, None), Differs),
             (cell("d", Kind::Prediction, None), Differs),
+            (Cell { printed: "large resemblances".into(), ..cell("e", Kind::Prediction, None) }, why()),
         ]);
         assert_eq!((found.judged, found.not_comparable), ([(1, 1), (0, 1), (0, 0), (0, 0)], 1));
-        let said = "Of 4 printed figures 2 are predictions, of which 1 come out. Beside it come out of 1 consequences of fitted figures 0. 1 are not comparable.";
+        let said = "Of 4 printed figures 2 are predictions, of which 1 come out. Of 1 consequences of fitted figures 0 come out; 1 are not comparable.";
         assert_eq!(found.sentence(), said);
         assert!(
             counts(vec![(cell("a", Kind::Definition, None), Reproduces)])
                 .sentence()
-                .contains("none is a prediction. Beside it come out of 1 definitions and arithmetic 1.")
+                .contains("none is a prediction. Of 1 definitions and arithmetic 1 come out; 0 are")
         );
     }
 }

@@ -7,7 +7,7 @@ use plotters::style::text_anchor::HPos;
 use crate::axes::Axes;
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::field::{arrow, write};
-use crate::labels::{Box2, place};
+use crate::labels::{Names, along};
 use crate::sides::{Side, Sides, around};
 
 const HEIGHT: i32 = 460;
@@ -18,29 +18,6 @@ const SIGHT: f64 = 0.16;
 const GREY: RGBColor = RGBColor(120, 120, 120);
 
 type Marks = Vec<(Mark, RGBColor, (f64, f64))>;
-
-/// Names beside points, and what else is in their way, px of the picture.
-#[derive(Default)]
-struct Names<'a> {
-    named: Vec<(&'a str, (f64, f64))>,
-    others: Vec<(f64, f64)>,
-}
-
-impl Names<'_> {
-    /// Writes them where they cover neither each other nor a point nor a line of sight, within `axes`.
-    fn write(&self, canvas: &mut Canvas, axes: &Axes, size: u32) {
-        let wide = |name: &str| 0.6 * f64::from(size) * name.chars().count() as f64 + 4.0;
-        let sizes: Vec<(f64, f64)> = self.named.iter().map(|(name, _)| (wide(name), f64::from(size))).collect();
-        let points: Vec<(f64, f64)> = self.named.iter().map(|(_, at)| *at).chain(self.others.iter().copied()).collect();
-        let [left, top, width, height] = axes.at.map(f64::from);
-        let area = Box2 { x: left + 2.0, y: top + 2.0, width: width - 4.0, height: height - 4.0 };
-        for ((name, _), found) in self.named.iter().zip(place(&points, &sizes, area)) {
-            if let Some(found) = found {
-                canvas.label(name, size, (found.x as u32 + 2, (found.y + 0.5 * found.height) as u32));
-            }
-        }
-    }
-}
 
 /// From above: stations with their axes before the wall; those of the second step in orange. Beside it the wall from the front. Without a sheet there are its
 /// points in its place. `None` without stations, or where the front is not known.
@@ -125,13 +102,6 @@ fn front_axes(sides: &Sides, ends: &[[f64; 3]; 2], roomy: bool, left: i32) -> Ax
     let width = (f64::from(HEIGHT) * (x[1] - x[0]) / (y[1] - y[0])).min(WIDEST);
     let height = width * (y[1] - y[0]) / (x[1] - x[0]);
     Axes { at: [left, 80, width.round() as i32, height.round() as i32], x, y }
-}
-
-/// Points of a line, close together.
-fn along([from, to]: &[(i32, i32); 2]) -> impl Iterator<Item = (f64, f64)> {
-    let ([x, y], [dx, dy]) = ([from.0, from.1].map(f64::from), [to.0 - from.0, to.1 - from.1].map(f64::from));
-    let steps = (dx.hypot(dy) / 8.0).ceil() as i32;
-    (0..=steps).map(move |step| f64::from(step) / f64::from(steps.max(1))).map(move |part| (x + part * dx, y + part * dy))
 }
 
 fn mark(target: &Target, (x, y): (i32, i32)) -> (Mark, RGBColor, (f64, f64)) {
