@@ -118,11 +118,12 @@ impl Sources<'_> {
         let place = table.cells.iter().position(|cell| cell.row == row && cell.column == column)?;
         let cell = &table.cells[place];
         let digits = Printed::parse(&cell.printed).map_or(3, |printed| (-printed.unit.log10()).round().max(0.0) as usize + 1);
-        let like = |ours: f64| match cell.printed.contains('/') {
-            true if ours > 0.0 => format!("1/{:.0}", 1.0 / ours),
-            // A count is one.
-            _ if digits == 1 && ours.fract() == 0.0 => fixed(ours, 0),
-            _ => fixed(ours, digits),
+        let like = |ours: f64| {
+            if cell.printed.contains('/') && ours > 0.0 {
+                return format!("1/{:.0}", 1.0 / ours);
+            }
+            // A count has no decimals.
+            fixed(ours, if digits == 1 && ours.fract() == 0.0 { 0 } else { digits })
         };
         Some((cell.printed.clone(), figures.get(place).copied().flatten().map(like)))
     }
