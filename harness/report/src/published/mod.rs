@@ -3,6 +3,7 @@
 pub(crate) mod adjustment;
 mod count;
 mod ensemble;
+mod error;
 mod every_method;
 mod figure;
 mod kind;
@@ -21,12 +22,13 @@ mod verdict;
 
 pub use count::{Counts, Figures};
 pub use ensemble::{Ensemble, EnsembleError};
+pub use error::PublishedError;
 pub(crate) use figure::of_points;
 pub use kind::Kind;
 pub use metric::Metric;
 pub(crate) use range::Range;
 pub(crate) use read::PREDICTIONS;
-pub use read::{PublishedError, papers, tables};
+pub use read::{papers, tables};
 pub use schema::schema;
 pub(crate) use section::{section, verdicts, without_records};
 pub(crate) use sweep::{section as swept, verdicts as swept_verdicts};

@@ -4,31 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::{Problem, Problems};
-use thiserror::Error;
 
-use super::{Cell, Ensemble, EnsembleError, Table, rules};
+use super::{Cell, Ensemble, PublishedError, Table, rules};
 
 /// What stands beside tables and is none.
 pub const PREDICTIONS: &str = "predictions.toml";
-
-/// A table that cannot be read.
-#[derive(Debug, Error)]
-pub enum PublishedError {
-    /// The file or its folder.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// Its text.
-    #[error(transparent)]
-    Problems(#[from] Problems),
-    /// Its experiments.
-    #[error(transparent)]
-    Ensemble(#[from] EnsembleError),
-}
 
 /// All tables of `paper` below `folder` (`reference/published`), in the order of their file names, with these.
 ///
