@@ -112,7 +112,7 @@ fn a_file_of_ones_own_is_run_and_reported() {
     assert!(output.status.success(), "{}", stderr(&output));
     let page = std::fs::read_to_string(project.path().join("reports/local/README.md")).unwrap();
     assert!(page.contains("Not the scenario as its file says: seed 3 in place of 20110513"), "{page}");
-    assert!(page.contains("![Image, approximations and truth](mine.png)"), "{page}");
+    assert!(page.contains("![The image with truth, approximate positions and the results of one method](mine.png)"), "{page}");
 }
 
 #[test]

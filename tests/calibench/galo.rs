@@ -134,13 +134,16 @@ fn the_report_reproduces_what_is_comparable() {
         let output = crate::project::run(project.path(), arguments);
         assert!(output.status.success(), "{}", crate::project::stderr(&output));
     }
-    let page = std::fs::read_to_string(project.path().join("reports/galo-2011/README.md")).unwrap();
+    let read = |page: &str| std::fs::read_to_string(project.path().join("reports/galo-2011").join(page)).unwrap();
+    let first = read("README.md");
+    assert!(first.contains("## What nobody can know") && first.contains("(not run here)") && first.contains("](tables.md)"), "{first}");
+    let page = read("tables.md");
     assert!(page.contains("Of 62 cells, 40 reproduce, 0 differ and 22 are not comparable."), "{page}");
     let row = |label: &str| page.lines().find(|line| line.starts_with(&format!("| {label} "))).unwrap_or_else(|| panic!("no row {label}"));
     assert!(row("9").contains("| reproduces "), "{}", row("9"));
     assert!(row("8").contains("| not comparable ") && row("8").contains("222.7792"), "{}", row("8"));
     for picture in ["corners.png", "corners-targets.png", "corners-drawn.png", "corners-drawn-targets.png"] {
-        assert!(page.contains(&format!("({picture})")), "{picture} is shown");
+        assert!(read("runs.md").contains(&format!("({picture})")), "{picture} is shown");
         assert!(image::open(project.path().join("reports/galo-2011").join(picture)).is_ok(), "{picture} is an image");
     }
 }

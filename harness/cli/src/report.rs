@@ -37,15 +37,18 @@ impl Report {
             return Ok(());
         }
         let make = |(family, scenarios): &(&String, &Vec<String>)| fill(&places, family, scenarios);
+        let mut written = Vec::new();
         for made in side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), make)? {
-            match made.put()? {
+            let put = made.put()?;
+            match &put {
                 Written::New(page) if !context.quiet => say!("{}", page.display()),
                 Written::Kept(page) if !context.quiet => {
                     say!("{}: kept as it is, nothing of it can be measured here", page.display());
                 }
                 _ => {}
             }
+            written.push(put);
         }
-        Ok(calibench_report::write_index(&places.reports)?)
+        Ok(calibench_report::write_index(&places.reports, &written)?)
     }
 }

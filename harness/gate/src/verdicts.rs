@@ -8,11 +8,11 @@ use super::finding::{Finding, Verdict};
 
 /// The name under which the verdicts of all tables stand in the head of their file.
 const NAME: &str = "published tables";
-/// The word for a cell that reproduces what is printed.
+/// How the verdict of a cell begins that reproduces what is printed.
 const REPRODUCES: &str = "reproduces";
 const COLUMNS: [&str; 4] = ["table", "row", "column", "verdict"];
 
-/// The verdicts of all published cells: `reproduces`, `differs` or `not comparable`, by table (`paper/table-1`), row and column.
+/// The verdicts of all published cells: `reproduces`, `differs` or `not comparable`, the first two with their kind as in `reproduces (prediction)`, by table (`paper/table-1`), row and column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Verdicts(pub BTreeMap<[String; 3], String>);
 
@@ -50,7 +50,7 @@ impl Verdicts {
         Ok(Some((all, sheet.checksum)))
     }
 
-    /// A cell that reproduces no more, or is not judged any more, fails; any other change is one.
+    /// A cell that reproduces no more, or is not judged any more, fails; any other change is one, that of a kind too.
     pub fn compare(&self, now: &Self) -> Vec<Finding> {
         let mut findings = Vec::new();
         let new = |verdict, cell: &[String; 3], message: String| {
@@ -60,7 +60,8 @@ impl Verdicts {
             match now.0.get(cell) {
                 None => findings.push(new(Verdict::Fails, cell, format!("the cell is missing; it was: {old}"))),
                 Some(word) if word != old => {
-                    let worse = old == REPRODUCES || word.starts_with("not");
+                    let falls = |word: &str| !word.starts_with(REPRODUCES);
+                    let worse = (falls(word) && !falls(old)) || word.starts_with("not");
                     let verdict = if worse { Verdict::Fails } else { Verdict::Changed };
                     findings.push(new(verdict, cell, format!("was: {old}, is: {word}")));
                 }
@@ -104,6 +105,9 @@ mod tests {
         assert_eq!(of("differs", &["not comparable"]), [Verdict::Fails]);
         assert_eq!(of("differs", &[REPRODUCES]), [Verdict::Changed]);
         assert_eq!(of(REPRODUCES, &[]), [Verdict::Fails]);
+        let [searched, predicted] = ["reproduces (reconstruction)", "reproduces (prediction)"];
+        assert_eq!(of(searched, &[predicted]), [Verdict::Changed], "what is called a prediction from now on is blessed as one");
+        assert_eq!(of(searched, &["differs (reconstruction)"]), [Verdict::Fails]);
         assert_eq!(of(REPRODUCES, &[REPRODUCES, "differs"]), [Verdict::Unblessed]);
     }
 }

@@ -23,7 +23,7 @@ pub fn report(py: Python<'_>, papers: Vec<String>, root: Option<PathBuf>) -> PyR
             made.into_iter().map(Filled::put).collect::<Result<Vec<_>, _>>()
         };
         let written = released(py, write)?.map_err(input)?;
-        write_index(&places.reports)?;
+        write_index(&places.reports, &written)?;
         let mut pages = Vec::new();
         for one in written {
             pages.push(match one {

@@ -6,7 +6,7 @@ use calibench_records::score::Score;
 use crate::load::{Loaded, LoadedSweep};
 use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, anchor};
-use crate::published::Tally;
+use crate::published::{Counts, Figures, Kind, Table, Verdict};
 
 /// Shares of lost and rejected points above this disqualify a method here, as on the page `which operator, when`.
 const MOST_FAILURES: f64 = 0.01;
@@ -14,7 +14,9 @@ const MOST_FAILURES: f64 = 0.01;
 /// The answers of a page, gathered while its sections are made.
 #[derive(Default)]
 pub struct Answers {
-    tables: Vec<(String, Tally)>,
+    /// The file of each published table, and its title.
+    tables: Vec<(String, String)>,
+    figures: Figures,
     winners: Vec<Winner>,
     said: Option<String>,
 }
@@ -32,9 +34,10 @@ struct Winner {
 }
 
 impl Answers {
-    /// Counts the verdicts of a published table.
-    pub fn table(&mut self, title: &str, tally: Tally) {
-        self.tables.push((title.to_owned(), tally));
+    /// Counts the printed figures of the published table in the file `name`.
+    pub fn table(&mut self, name: &str, table: &Table, verdicts: &[Verdict]) {
+        self.tables.push((name.to_owned(), table.title.clone()));
+        self.figures.add(name, table, verdicts);
     }
 
     /// An answer in words, of a section that has one.
@@ -83,12 +86,11 @@ impl Answers {
     /// The first paragraph: a sentence or two, without the numbers that stand in the tables.
     pub fn paragraph(&self) -> String {
         let mut sentences: Vec<String> = self.said.iter().cloned().collect();
-        let mut total = Tally::default();
-        self.tables.iter().for_each(|(_, tally)| total += *tally);
-        if total.cells() > 0 {
-            sentences.push(format!("Of {} printed figures {}.", total.cells(), total.words()));
+        if self.figures.is_empty() {
+            sentences.extend(self.leaders());
+        } else {
+            sentences.push(self.figures.counts(None).sentence());
         }
-        sentences.extend(self.leaders());
         sentences.join(" ")
     }
 
@@ -114,22 +116,37 @@ impl Answers {
         Some(format!("Least error: `{first}` in {} of {of} {things}, {rmse} px RMSE{rest}.", least.len()))
     }
 
-    /// The tables behind the paragraph.
-    pub fn tables(&self) -> String {
-        let mut text = String::new();
-        if !self.tables.is_empty() {
-            let fitted = self.tables.iter().any(|(_, tally)| tally.consistent + tally.inconsistent > 0);
-            let mut header = vec!["printed table", "reproduce", "differ", "consistent", "inconsistent", "not comparable"];
-            header.retain(|name| fitted || !name.ends_with("consistent"));
-            let mut rows = MarkdownTable::new(&header);
-            for (title, tally) in &self.tables {
-                let mut counts = vec![tally.reproduce, tally.differ];
-                counts.extend([tally.consistent, tally.inconsistent].into_iter().filter(|_| fitted));
-                counts.push(tally.not_comparable);
-                rows.row(std::iter::once(format!("[{title}](#{})", anchor(title))).chain(counts.iter().map(ToString::to_string)));
-            }
-            text.push_str(&format!("{}\n", rows.render()));
+    /// How many printed figures of each table come out, by kind.
+    pub fn counted(&self) -> String {
+        if self.tables.is_empty() {
+            return String::new();
         }
+        let header: Vec<&str> =
+            ["printed in"].into_iter().chain(Kind::COUNTED.map(Kind::word)).chain(["not comparable", "figures"]).collect();
+        let mut rows = MarkdownTable::new(&header);
+        let row = |counts: &Counts| {
+            let judged = counts
+                .judged
+                .map(|(comes, fails)| if comes + fails == 0 { String::new() } else { format!("{comes} of {}", comes + fails) });
+            judged.into_iter().chain([counts.not_comparable.to_string(), counts.all().to_string()]).collect::<Vec<_>>()
+        };
+        for (name, title) in &self.tables {
+            let counts = self.figures.counts(Some(name));
+            rows.row(std::iter::once(format!("[{title}](#{})", anchor(title))).chain(row(&counts)));
+        }
+        if self.tables.len() > 1 {
+            rows.row(std::iter::once("**all**".to_owned()).chain(row(&self.figures.counts(None))));
+        }
+        format!(
+            "{}\nHow many come out (reproduce, or are consistent) of those that are judged, by what kind of evidence that is. A printed figure that several cells compare, or whose ratios stand \
+             in a table of ours, is counted once, where it is printed, by the verdict of the strongest kind; of these the gravest counts. What was put in is not comparable.\n\n",
+            rows.render()
+        )
+    }
+
+    /// The table behind the leaders.
+    pub fn led(&self) -> String {
+        let mut text = String::new();
         if self.winners.len() > 1 {
             let mut rows =
                 MarkdownTable::new(&["scenario", "least RMSE", "px", "RMSE / bound", "failed, %", "the next", "`opencv_subpix`"]);
@@ -208,6 +225,7 @@ mod tests {
     use calibench_records::score::Errors;
 
     use super::*;
+    use crate::published::{Cell, Metric};
 
     fn score(errors: &[f64], rejected: u64) -> Score {
         let mut kept = Errors::default();
@@ -233,15 +251,17 @@ mod tests {
     #[test]
     fn a_paragraph_counts_figures_and_scenarios() {
         let mut answers = Answers::default();
-        answers.table("Table 1: x", Tally { reproduce: 2, differ: 1, ..Tally::default() });
-        answers.table("Table 2", Tally { reproduce: 1, not_comparable: 4, ..Tally::default() });
         for (scenario, method, rmse) in [("f/a", "one:window=9", 0.12), ("f/b", "one", 0.1), ("f/c", "two", 0.3)] {
             let row = vec!["0.1".into()];
             answers.winners.push(Winner { scenario: scenario.into(), cells: 1, method: method.into(), least: vec![rmse], row });
         }
-        let expected = "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, 0.100 to 0.120 px RMSE, `two` in 1.";
-        assert_eq!(answers.paragraph(), expected);
-        let tables = answers.tables();
-        assert!(tables.contains("[Table 1: x](#table-1-x)") && tables.contains("[a](#scenario-fa)"), "{tables}");
+        assert_eq!(answers.paragraph(), "Least error: `one` in 2 of 3 scenarios, 0.100 to 0.120 px RMSE, `two` in 1.");
+        assert!(answers.led().contains("[a](#scenario-fa)"), "{}", answers.led());
+        let cells = vec![Cell::bare("1", Metric::Figure), Cell { row: "s".into(), ..Cell::bare("1", Metric::Figure) }];
+        let table = Table { title: "Table 1: x".into(), cells, ..Table::bare() };
+        answers.table("table-1", &table, &[Verdict::Reproduces, Verdict::Differs]);
+        assert!(answers.paragraph().starts_with("Of 2 printed figures 2 are predictions, of which 1 come out;"), "{}", answers.paragraph());
+        assert!(!answers.paragraph().contains("Least error"), "who leads is another question");
+        assert!(answers.counted().contains("| [Table 1: x](#table-1-x) |     1 of 2 |"), "{}", answers.counted());
     }
 }

@@ -7,13 +7,14 @@ use rayon::prelude::*;
 
 use crate::composed::Composed;
 use crate::detectors::Detectors;
+use crate::first_screen::Sources;
 use crate::load::adjustments::{self, Summaries};
 use crate::load::description;
 use crate::page::Page;
 use crate::places::PAGE;
 use crate::speeds::Speeds;
 use crate::targets::Comparison;
-use crate::{LoadError, Loaded, Places, ReportError, detectors, load, papers, published, sweep, targets};
+use crate::{LoadError, Loaded, Places, ReportError, detectors, load, papers, predictions, published, sweep, targets};
 
 /// The report of `family` from the records of `scenarios`; `None` where nothing of it could be measured here and one that was measured elsewhere is there.
 ///
@@ -37,24 +38,29 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
     }
     let tables = published::tables(&places.published, family)?;
     let mut page = Page::new(family);
+    let sweeps: Vec<_> = all.iter().filter_map(Either::sweep).collect();
+    let mut sources = Sources { tables: Vec::new(), runs: loaded.clone(), sweeps: sweeps.clone() };
     let by_name = |name: &String| loaded.iter().find(|l| l.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
-    for (_, table) in &tables {
-        let swept = all.iter().filter_map(Either::sweep).find(|swept| swept.name == table.scenario);
+    for (name, table) in &tables {
+        let swept = sweeps.iter().copied().find(|swept| swept.name == table.scenario);
         let section = match swept {
-            Some(swept) if !table.is_of_adjustments() => published::swept(table, swept),
+            Some(swept) if !table.is_of_adjustments() => published::swept(table, swept)?,
             _ if table.is_of_adjustments() && by_name(&table.scenario).is_err() => published::without_records(table),
             _ => {
                 let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
                 published::section(table, by_name(&table.scenario)?, &beside)?
             }
         };
-        page.text.push_str(&section.text);
-        page.answers.table(&table.title, section.tally);
+        page.printed.push_str(&section.text);
+        page.answers.table(name, table, &section.verdicts);
+        sources.tables.push((name, table, section.figures));
         if table.is_of_adjustments() {
             page.illustrated.push(table.scenario.clone());
         }
     }
-    let (text, pictures) = papers::section(family, &loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>())?;
+    page.first_screen = sources.first_screen(&places.published.join(family))?;
+    page.predictions = predictions::page(family, &places.published.join(family), &sources)?;
+    let (text, pictures) = papers::section(family, &loaded, &sweeps)?;
     page.text.push_str(&text);
     page.pictures.extend(pictures);
     let (mut compared, mut detecting) = (Vec::new(), Vec::new());

@@ -5,8 +5,14 @@ use calibench_records::description::Description;
 use crate::answer::{Answers, heading};
 use crate::composed::Composed;
 use crate::markdown::contents;
+use crate::places::PAGE;
 use crate::studies::{self, OnPage, Shown};
 use crate::{Canvas, LoadError, Loaded, scores_section, sweep};
+
+/// The page of a paper's tables, and that of its runs.
+const TABLES: &str = "tables.md";
+const RUNS: &str = "runs.md";
+const PREDICTIONS: &str = "predictions.md";
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
@@ -15,6 +21,13 @@ pub struct Page {
     pub answers: Answers,
     /// Scenarios that a published table of adjustments stands on: they are shown in pictures.
     pub illustrated: Vec<String>,
+    /// What the page of a paper shows first, where it was written; all else then stands on pages of its own.
+    pub first_screen: Option<String>,
+    /// The page of the paper's predictions.
+    pub predictions: Option<String>,
+    /// The sections of published tables.
+    pub printed: String,
+    /// The sections of scenarios.
     pub text: String,
     /// Whether there are tables of scores.
     scored: bool,
@@ -29,6 +42,9 @@ impl Page {
             family: family.to_owned(),
             answers: Answers::default(),
             illustrated: Vec::new(),
+            first_screen: None,
+            predictions: None,
+            printed: String::new(),
             text: String::new(),
             scored: false,
             pictures: Vec::new(),
@@ -93,16 +109,41 @@ impl Page {
     /// The page with all that is beside it.
     pub fn composed(self) -> Composed {
         let legend = if self.scored { scores_section::legend() } else { String::new() };
-        let body = format!("{}\n\n{legend}", self.text.trim_end());
         let family = &self.family;
         let made = format!(
             "Made by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. Some of the methods compared here are our own, `forstner` \
              and `harris_paraboloid` among them: each gets the same images, the same starts and the same score."
         );
-        let (answer, tables) = (self.answers.paragraph(), self.answers.tables());
+        let answer = self.answers.paragraph();
         let answer = if answer.is_empty() { answer } else { format!("{answer}\n\n") };
-        let text = format!("# {family}\n\n{answer}{tables}{}{made}\n\n{}\n", contents(&body), body.trim_end());
-        let mut composed = Composed::page(text, self.pictures);
+        let (counted, led) = (self.answers.counted(), self.answers.led());
+        let whole = |title: &str, before: &str, body: &str| format!("# {title}\n\n{before}{}{}\n", contents(body), body.trim_end());
+        let predicted = if self.predictions.is_some() {
+            format!(" [Predictions]({PREDICTIONS}) of experiments that the paper did not make.")
+        } else {
+            String::new()
+        };
+        let runs = format!("{}\n\n{legend}", self.text.trim_end());
+        let mut composed = match &self.first_screen {
+            None => {
+                let body = format!("{made}\n\n{}{runs}", self.printed);
+                Composed::page(whole(family, &format!("{answer}{counted}{led}"), &body), self.pictures)
+            }
+            Some(first) => {
+                let rest = format!(
+                    "[Printed tables beside ours, cell by cell]({TABLES}), with what was found out. [Every run behind them]({RUNS}).{predicted}"
+                );
+                let mut composed = Composed::page(format!("# {family}\n\n{answer}{}\n\n{rest}\n\n{made}\n", first.trim()), self.pictures);
+                let up = format!("[The paper in one screen]({PAGE}).\n\n");
+                let pages = [
+                    (TABLES, whole(&format!("{family}: printed tables"), &format!("{up}{counted}"), &self.printed)),
+                    (RUNS, whole(&format!("{family}: runs"), &format!("{up}{led}"), &runs)),
+                ];
+                composed.pages.extend(pages.map(|(name, text)| (name.to_owned(), text)));
+                composed
+            }
+        };
+        composed.pages.extend(self.predictions.map(|text| (PREDICTIONS.to_owned(), text)));
         composed.pages.extend(self.beside.into_iter().map(|(name, text)| (name.to_owned(), text)));
         composed
     }

@@ -1,6 +1,6 @@
 //! A board and the poses in which cameras see it.
 
-use calibench_records::description::{Description, Views};
+use calibench_records::description::{Description, Station, Views};
 use nalgebra::{Point3, Vector3};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -9,6 +9,7 @@ use crate::Canvas;
 use crate::axes::Axes;
 use crate::canvas::{COLOURS, Mark};
 use crate::field::{Area, arrow, write};
+use crate::labels::{Names, along};
 use crate::sides::{Side, Sides, around};
 
 pub(crate) const CAPTION: &str =
@@ -94,21 +95,22 @@ fn picture(views: &Views) -> Option<Canvas> {
 fn draw(canvas: &mut Canvas, drawing: &Drawing, views: &Views, ends: &[[f64; 3]; 2], length: f64) {
     let Drawing { title, right, up, axes } = drawing;
     let place = |at: &[f64; 3]| axes.place(right.of(at), up.of(at));
+    let sight = |station: &Station| {
+        let to: [f64; 3] = (Point3::from(station.centre) + Vector3::from(station.sight) * length).into();
+        [place(&station.centre), place(&to)]
+    };
+    let sights: Vec<[(i32, i32); 2]> = views.stations.iter().map(sight).collect();
     canvas.text(title, 18, (axes.at[0] as u32, (axes.at[1] - 40) as u32));
     canvas.paint(|area| {
         axes.vertical(area, &up.title(&views.unit));
         axes.horizontal(area, &right.title(&views.unit));
         board(area, ends.each_ref().map(place));
-        for station in &views.stations {
-            let to: [f64; 3] = (Point3::from(station.centre) + Vector3::from(station.sight) * length).into();
-            arrow(area, place(&station.centre), place(&to));
-        }
+        sights.iter().for_each(|[from, to]| arrow(area, *from, *to));
     });
     let marks: Vec<_> = views.stations.iter().map(|station| place(&station.centre)).collect();
     canvas.marks(&marks.iter().map(|(x, y)| (Mark::Circle, COLOURS[1], (f64::from(*x), f64::from(*y)))).collect::<Vec<_>>());
-    for (station, (x, y)) in views.stations.iter().zip(marks) {
-        canvas.label(&station.name, 13, ((x + 9).max(0) as u32, (y + 9).max(0) as u32));
-    }
+    let named = views.stations.iter().zip(marks).map(|(station, (x, y))| (station.name.as_str(), (f64::from(x), f64::from(y))));
+    Names { named: named.collect(), others: sights.iter().flat_map(along).collect() }.write(canvas, axes, 13);
 }
 
 /// The board, or its edge.
@@ -132,7 +134,7 @@ fn legend(canvas: &mut Canvas, (left, top): (i32, i32)) {
 
 #[cfg(test)]
 mod tests {
-    use calibench_records::description::{Station, Target};
+    use calibench_records::description::Target;
 
     use super::*;
 

@@ -55,6 +55,8 @@ pub struct SceneFigures {
     pub overview: Canvas,
     /// Windows around targets.
     pub panels: Canvas,
+    /// What is marked in the overview, for a sentence.
+    pub marked: &'static str,
     /// What the panels show, for a sentence.
     pub shown: String,
 }
@@ -102,7 +104,8 @@ pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
         (_, false) => "each target",
     };
     let shown = format!("{side} x {side} px around {which}, enlarged {zoom} times");
-    Some(SceneFigures { overview, panels: panels(&close, &layers, side, zoom, 5), shown })
+    let marked = if targets.len() > CROWD { "truth" } else { "truth, approximate positions and the results of one method" };
+    Some(SceneFigures { marked, overview, panels: panels(&close, &layers, side, zoom, 5), shown })
 }
 
 /// The kind of each target, where the records tell it.

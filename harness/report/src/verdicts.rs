@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::published::{self, Table};
+use crate::published::{self, Cell, Table, Verdict};
 use crate::{LoadError, ReportError, load, sweep};
 
-/// A verdict: table (`paper/table-1`), row and column, and the word for it.
+/// A verdict: table (`paper/table-1`), row and column, and the word for it with its kind, as in `reproduces (reconstruction)`.
 pub type CellVerdict = ([String; 3], String);
 
 /// What is said of a cell whose method has no records.
@@ -47,9 +47,17 @@ pub fn verdicts(records: &Path, published: &Path) -> Result<Vec<CellVerdict>, Re
 /// The word for each cell of a table, in their order.
 fn of_table(records: &Path, table: &Table) -> Result<Vec<String>, LoadError> {
     let verdicts = match sweep::load(records, &table.scenario)? {
-        Some(loaded) => published::swept_verdicts(table, &loaded),
+        Some(loaded) => published::swept_verdicts(table, &loaded)?,
         None => published::verdicts(table, &load(records, &table.scenario)?)?,
     };
-    let words = verdicts.map(|verdicts| verdicts.iter().map(|verdict| verdict.word().to_owned()).collect());
+    let words = verdicts.map(|verdicts| table.cells.iter().zip(&verdicts).map(|(cell, verdict)| word(cell, verdict)).collect());
     Ok(words.unwrap_or_else(|| vec![NO_RECORDS.to_owned(); table.cells.len()]))
+}
+
+/// What is not comparable is of no kind.
+fn word(cell: &Cell, verdict: &Verdict) -> String {
+    match (verdict, cell.kind) {
+        (Verdict::NotComparable(_), _) | (_, None) => verdict.word().to_owned(),
+        (_, Some(kind)) => format!("{} ({})", verdict.word(), kind.word()),
+    }
 }

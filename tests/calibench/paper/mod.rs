@@ -72,6 +72,51 @@ fn the_findings_stand_in_the_reports() {
     }
 }
 
+/// The page of a paper is one screen: all its figures were run, what it shows and links to is there, and it is short.
+#[test]
+fn the_pages_of_papers_are_one_screen() {
+    let papers = calibench_report::published::papers(&root().join("reference/published"));
+    assert_eq!(papers.len(), 4);
+    for paper in papers {
+        let [first, predictions] = ["README.md", "predictions.md"].map(|name| Page::read(&format!("reports/{paper}/{name}")));
+        assert!(first.text.split_whitespace().count() < 800, "{paper}: {} words", first.text.split_whitespace().count());
+        assert_eq!(first.text.matches("![").count(), 1, "{paper}: one picture");
+        for page in [first, predictions] {
+            assert!(!page.text.contains("(not run here)"), "{}", page.name);
+            for link in page.links() {
+                assert!(root().join("reports").join(&paper).join(&link).is_file(), "{}: {link}", page.name);
+            }
+        }
+    }
+}
+
+/// The README counts printed figures as the pages of the papers do together.
+#[test]
+fn printed_figures_are_counted_as_on_their_pages() {
+    let pages: String = calibench_report::published::papers(&root().join("reference/published"))
+        .iter()
+        .map(|paper| Page::read(&format!("reports/{paper}/README.md")).text.lines().nth(2).unwrap().to_lowercase() + "\n")
+        .collect();
+    let number = |text: &str| {
+        text.trim_start_matches(|c: char| !c.is_ascii_digit()).split(|c: char| !c.is_ascii_digit()).next()?.parse::<usize>().ok()
+    };
+    let readme = Page::read("README.md").text.replace("\n  ", " ").replace(['[', ']'], "");
+    for (in_pages, in_readme) in [
+        ("printed figures", "printed figures"),
+        ("consequences of fitted figures", "consequences of fitted ones"),
+        ("reconstructions", "reconstructions"),
+        ("definitions and arithmetic", "definitions and arithmetic"),
+    ] {
+        let of = |text: &str, name: &str| -> Vec<usize> {
+            let before = |line: &str| line.rsplit(' ').next().and_then(number);
+            text.match_indices(&format!(" {name}")).filter_map(|(at, _)| before(&text[..at])).collect()
+        };
+        let (sum, told) = (of(&pages, in_pages).iter().sum::<usize>(), of(&readme, in_readme));
+        assert_eq!(told, [sum], "{in_readme}: README and the pages of the papers");
+    }
+    assert_eq!(pages.matches("none is a prediction").count(), 4, "README: none was predicted");
+}
+
 /// The table of crates in the page on architecture is what Cargo knows.
 #[test]
 fn the_table_of_crates_is_that_of_cargo() {

@@ -202,7 +202,8 @@ impl BoardFinder for TagCorners {
     fn notes(&self) -> Vec<String> {
         let note = match self.refinement {
             CORNER_REFINE_NONE | CORNER_REFINE_CONTOUR => {
-                "it has the corners of tags that touch squares up to 2 px inside in x and in y; `refinement = \"subpix\"` mends that".to_owned()
+                "it has the corners of tags that touch squares up to 2 px inside in x and in y; `refinement = \"subpix\"` mends that"
+                    .to_owned()
             }
             CORNER_REFINE_APRILTAG if !self.corrected => {
                 "its refinement `apriltag` has corners half a pixel to the right and below; `corrected = \"yes\"` takes that out".to_owned()

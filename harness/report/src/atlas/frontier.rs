@@ -3,9 +3,9 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::labels::{Box2, place};
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::field::{Area, write};
+use crate::labels::{Box2, place};
 use crate::markdown::plain;
 use crate::ticks;
 

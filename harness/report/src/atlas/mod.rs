@@ -3,7 +3,6 @@
 mod choose;
 mod explorer;
 mod frontier;
-mod labels;
 mod load;
 mod neighbours;
 mod page;

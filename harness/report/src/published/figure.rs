@@ -4,6 +4,7 @@ use calibench_records::results::{Outcome, PointResult};
 use calibench_records::statistics::running::Running;
 
 use super::Metric;
+use super::range::Range;
 
 /// A figure in the first run and over all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,41 +15,19 @@ pub struct Ours {
     pub mean: f64,
     /// Half the 95 % interval of the mean.
     pub half: Option<f64>,
-    /// Standard deviation of a single run.
-    pub scatter: Option<f64>,
+    /// Where single runs lie; `None` of one run.
+    pub range: Option<Range>,
     /// The same figure of true errors, with half its 95 % interval, where it makes sense.
     pub truth: Option<(f64, Option<f64>)>,
 }
 
 impl Ours {
-    /// Of one run and of all.
-    pub fn of(one: Option<f64>, all: &Running) -> Option<Self> {
-        Some(Self { one: one?, mean: all.mean()?, half: all.half(), scatter: all.deviation(), truth: None })
-    }
-
-    /// Over another figure of the same trials: the ratio of the means, whose relative spreads are added as if they were independent.
-    pub fn over(&self, other: &Self) -> Self {
-        let ratio = self.mean / other.mean;
-        let joined = |a: Option<f64>, b: Option<f64>| Some(ratio.abs() * (a? / self.mean).hypot(b? / other.mean));
-        Self {
-            one: self.one / other.one,
-            mean: ratio,
-            half: joined(self.half, other.half),
-            scatter: joined(self.scatter, other.scatter),
-            truth: None,
-        }
-    }
-
-    /// In a unit that is `factor` times as small.
-    pub fn scaled(self, factor: f64) -> Self {
-        let by = |value: Option<f64>| value.map(|value| value * factor);
-        Self {
-            one: self.one * factor,
-            mean: self.mean * factor,
-            half: by(self.half),
-            scatter: by(self.scatter),
-            truth: self.truth.map(|(v, h)| (v * factor, by(h))),
-        }
+    /// Of the figures of all trials, in their order; `None` where there are none.
+    pub fn of(trials: &[f64]) -> Option<Self> {
+        let mut all = Running::default();
+        trials.iter().for_each(|figure| all.add(*figure));
+        let range = Range::of(trials).filter(|_| trials.len() > 1);
+        Some(Self { one: *trials.first()?, mean: all.mean()?, half: all.half(), range, truth: None })
     }
 }
 
@@ -134,17 +113,11 @@ mod tests {
 
     /// Values 1, 2 and 6: mean 3, variance 7, t(0.975, 2) = 4.302653.
     #[test]
-    fn a_figure_in_smaller_units_is_larger_in_all_its_parts() {
-        let mut all = Running::default();
-        [1.0, 2.0, 6.0].into_iter().for_each(|value| all.add(value));
-        let ours = Ours { truth: Some((3.5, Some(0.5))), ..Ours::of(Some(1.0), &all).unwrap() };
-        let half = 4.302_652_73 * (7.0_f64 / 3.0).sqrt();
+    fn a_figure_has_its_first_run_its_mean_and_where_its_runs_lie() {
+        let ours = Ours::of(&[1.0, 2.0, 6.0]).unwrap();
         assert!((ours.one - 1.0).abs() < 1e-12 && (ours.mean - 3.0).abs() < 1e-12);
-        assert!((ours.half.unwrap() - half).abs() < 1e-6 && (ours.scatter.unwrap() - 7.0_f64.sqrt()).abs() < 1e-12);
-        let scaled = ours.scaled(4.0);
-        assert!((scaled.one - 4.0).abs() < 1e-12 && (scaled.mean - 12.0).abs() < 1e-12);
-        assert!((scaled.half.unwrap() - 4.0 * half).abs() < 1e-5 && (scaled.scatter.unwrap() - 112.0_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(scaled.truth, Some((14.0, Some(2.0))));
-        assert_eq!((Ours::of(None, &all), Ours::of(Some(1.0), &Running::default())), (None, None));
+        assert!((ours.half.unwrap() - 4.302_652_73 * (7.0_f64 / 3.0).sqrt()).abs() < 1e-6);
+        assert_eq!(ours.range, Some(Range { median: 2.0, low: 1.0, high: 6.0 }));
+        assert_eq!((Ours::of(&[2.0]).unwrap().range, Ours::of(&[])), (None, None), "one run has no range");
     }
 }

@@ -1,17 +1,16 @@
 //! A published table beside many runs of ours: one of them, their mean, and where single runs lie.
 
-use calibench_records::statistics::running::Running;
 use calibench_records::stored::read_points;
 
-use super::ensemble::Range;
 use super::figure::{Ours, of_points};
 use super::notes::Notes;
+use super::range::Range;
 use super::{Cell, Printed, Table, Tally, Verdict};
 use crate::load::{LoadError, Loaded};
 use crate::markdown::{MarkdownTable, fixed};
 
-/// Within so many standard deviations of their mean lie 95 % of single runs, if these are normal.
-pub const SINGLE: f64 = 1.959_964;
+/// What is said of single runs.
+pub const SINGLE: &str = "where 95 % of single runs lie (their quantiles; of fewer than 39 runs the least and the greatest)";
 /// The heading of what plausible experiments say.
 const PLAUSIBLE: &str = "plausible, 95 %";
 
@@ -20,25 +19,22 @@ const PLAUSIBLE: &str = "plausible, 95 %";
 /// # Errors
 /// Records that cannot be read.
 pub fn of_all_trials(table: &Table, loaded: &Loaded) -> Result<Vec<Option<Ours>>, LoadError> {
-    let mut figures = vec![(None, Running::default()); table.cells.len()];
+    let mut figures = vec![Vec::new(); table.cells.len()];
     read_points(&loaded.folder, &loaded.name, |trial, methods| {
-        for (cell, (first, all)) in table.cells.iter().zip(&mut figures) {
+        for (cell, trials) in table.cells.iter().zip(&mut figures) {
             let label = cell.method.as_ref().unwrap_or(&table.method);
             let method = methods.iter().position(|method| *method.label == **label);
             let figure = method.and_then(|method| of_points(&trial.points, method, cell.metric, cell.target.as_deref(), &cell.except));
-            if let Some(figure) = figure.map(|figure| figure + cell.plus) {
-                first.get_or_insert(figure);
-                all.add(figure);
-            }
+            trials.extend(figure.map(|figure| figure + cell.plus));
         }
     })?;
-    Ok(figures.into_iter().map(|(first, all)| Ours::of(first, &all)).collect())
+    Ok(figures.iter().map(|trials| Ours::of(trials)).collect())
 }
 
 /// The table, with a figure of ours for every cell or none, over `trials` trials.
 pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (String, Tally) {
     let against_truth = figures.iter().flatten().any(|ours| ours.truth.is_some());
-    let mut header = vec!["row", "column", "printed", "one run", "mean", "single runs, 95 %", "true errors", PLAUSIBLE, "verdict"];
+    let mut header = vec!["row", "column", "printed", "one run", "mean", "single runs, 95 %", "true errors", PLAUSIBLE, "kind", "verdict"];
     header.retain(|name| (against_truth || *name != "true errors") && (table.experiments.is_some() || *name != PLAUSIBLE));
     let mut rows = MarkdownTable::new(&header);
     let (mut tally, mut notes) = (Tally::default(), Notes::default());
@@ -58,11 +54,12 @@ pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (Stri
         let said = match (&verdict, figure, Printed::parse(&cell.printed)) {
             (Verdict::NotComparable(why), _, _) => format!("{}{}", verdict.word(), notes.mark(why)),
             (Verdict::Differs, ours, Some(printed)) if printed.value != 0.0 => {
-                let ours = range.map(|range| range.median).or(ours.as_ref().map(|ours| ours.mean)).unwrap_or(f64::NAN);
+                let ours = middle(table, cell, ours.as_ref()).unwrap_or(f64::NAN);
                 format!("{}: {:.2} times", verdict.word(), ours / printed.value)
             }
             _ => verdict.word().to_owned(),
         };
+        row.push(cell.kind.map_or_else(String::new, |kind| kind.word().to_owned()));
         rows.row(row.into_iter().chain([said + &misprint]));
     }
     let truth = if against_truth {
@@ -77,7 +74,7 @@ pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (Stri
         )
     });
     let text = format!(
-        "Printed beside `{}`: its first trial, the mean of {trials} trials, and where 95 % of single runs lie; after \u{b1} stands half a 95 % interval. The paper is a single run: a cell \
+        "Printed beside `{}`: its first trial, the mean of {trials} trials, and {SINGLE}; after \u{b1} stands half a 95 % interval. The paper is a single run: a cell \
          *reproduces* when it lies in that range, widened by half a unit of its last digit; where it *differs*, ours is so many times as large in the mean.{truth}{experiments}\n\n{}\n{}{}\n\n",
         table.scenario,
         rows.render(),
@@ -90,13 +87,20 @@ pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (Stri
 /// The verdict of `cell`, given our figure or none: plausible experiments come first where the table has them.
 pub fn verdict(table: &Table, cell: &Cell, ours: Option<&Ours>) -> Verdict {
     if let Some(range) = plausible(table, cell) {
-        return cell.verdict_within(0.5 * (range.low + range.high), 0.5 * (range.high - range.low));
+        return cell.verdict_between(range.low, range.high);
     }
     match (&cell.not_comparable, ours) {
         (Some(why), _) => Verdict::NotComparable(why.clone()),
         (None, None) => Verdict::NotComparable("no record of ours".to_owned()),
-        (None, Some(ours)) => cell.verdict_within(ours.mean, SINGLE * ours.scatter.unwrap_or(0.0)),
+        (None, Some(ours)) => {
+            ours.range.map_or_else(|| cell.verdict_between(ours.one, ours.one), |range| cell.verdict_between(range.low, range.high))
+        }
     }
+}
+
+/// Our figure for `cell`: the median of plausible experiments, or the mean of our trials.
+pub fn middle(table: &Table, cell: &Cell, ours: Option<&Ours>) -> Option<f64> {
+    plausible(table, cell).map(|range| range.median).or(ours.map(|ours| ours.mean))
 }
 
 fn plausible(table: &Table, cell: &Cell) -> Option<Range> {
@@ -115,13 +119,7 @@ fn cells(cell: &Cell, ours: &Ours) -> Vec<String> {
         None => text(value),
     };
     let truth = ours.truth.map_or_else(String::new, |(value, half)| with_half(value, half));
-    let range = ours.scatter.map_or_else(
-        || "none".to_owned(),
-        |scatter| {
-            let (low, high) = (ours.mean - SINGLE * scatter, ours.mean + SINGLE * scatter);
-            format!("{} to {}", text(low), text(high))
-        },
-    );
+    let range = ours.range.map_or_else(|| "none".to_owned(), |range| format!("{} to {}", text(range.low), text(range.high)));
     vec![text(ours.one), with_half(ours.mean, ours.half), range, truth]
 }
 
@@ -150,40 +148,41 @@ mod tests {
     }
 
     fn table(cells: Vec<Cell>) -> Table {
-        Table {
-            title: String::new(),
-            source: String::new(),
-            unit: String::new(),
-            scenario: "s".into(),
-            method: "m".into(),
-            columns: vec!["c".into()],
-            findings: Vec::new(),
-            beside: Vec::new(),
-            sets: Vec::new(),
-            ensemble: None,
-            cells,
-            experiments: None,
-        }
+        Table { cells, ..Table::bare() }
     }
 
-    const OURS: Ours = Ours { one: 2.0, mean: 2.5, half: Some(0.25), scatter: Some(0.5), truth: Some((3.0, None)) };
+    const RANGE: Range = Range { median: 2.4, low: 1.52, high: 3.48 };
+    const OURS: Ours = Ours { one: 2.0, mean: 2.5, half: Some(0.25), range: Some(RANGE), truth: Some((3.0, None)) };
 
-    /// 95 % of single runs of deviation 0.5 lie within 0.98 of 2.5.
     #[test]
-    fn single_runs_lie_within_two_deviations() {
+    fn print_is_a_single_run() {
         assert_eq!(cells(&cell("1.0"), &OURS), ["2.00", "2.50 \u{b1} 0.25", "1.52 to 3.48", "3.00"]);
-        assert_eq!(cells(&cell("4"), &Ours { half: None, scatter: None, truth: None, ..OURS }), ["2.0", "2.5", "none", ""]);
+        assert_eq!(cells(&cell("4"), &Ours { half: None, range: None, truth: None, ..OURS }), ["2.0", "2.5", "none", ""]);
         for (printed, expected) in
             [("1.5", Verdict::Reproduces), ("1.4", Verdict::Differs), ("3.5", Verdict::Reproduces), ("3.6", Verdict::Differs)]
         {
             assert_eq!(verdict(&table(Vec::new()), &cell(printed), Some(&OURS)), expected, "{printed}");
         }
         assert_eq!(
-            verdict(&table(Vec::new()), &cell("2.4"), Some(&Ours { scatter: None, ..OURS })),
+            verdict(&table(Vec::new()), &cell("2.4"), Some(&Ours { range: None, ..OURS })),
             Verdict::Differs,
             "one run has no range"
         );
         assert_eq!(verdict(&table(Vec::new()), &cell("2.4"), None), Verdict::NotComparable("no record of ours".into()));
+    }
+
+    /// Errors of single runs are skewed: 0.01 px in nine of ten, 0.05 in the tenth, with a mean of 0.014 and a deviation of 0.012. Of two deviations either way -0.002 and 0.036 would
+    /// reproduce; no run is below 0.01, and one in ten is at 0.05.
+    #[test]
+    fn single_runs_are_judged_by_their_quantiles() {
+        let runs: Vec<f64> = (0..100).map(|run| if run % 10 == 0 { 0.05 } else { 0.01 }).collect();
+        let ours = Ours::of(&runs).unwrap();
+        let of = |printed: &str| verdict(&table(Vec::new()), &cell(printed), Some(&ours));
+        assert_eq!(
+            [of("-0.002"), of("0.004"), of("0.010"), of("0.050")].map(|verdict| verdict.word()),
+            ["differs", "differs", "reproduces", "reproduces"]
+        );
+        assert_eq!(cells(&cell("0.010"), &ours)[2], "0.0100 to 0.0500");
     }
 
     /// 1/4 px within 0.05: of the denominator that is 0.05 / (1/4)^2 = 0.8.
@@ -213,29 +212,29 @@ mod tests {
             .collect();
         let last: Vec<&str> = said.iter().filter(|row| row[0] == "r").map(|row| *row.last().unwrap()).collect();
         assert_eq!(last, ["differs: 0.25 times", "differs", "reproduces (a)", "not comparable (b)"]);
-        assert_eq!((tally, said[1].len()), (Tally { reproduce: 1, differ: 2, not_comparable: 1, ..Tally::default() }, 8));
+        assert_eq!((tally, said[1].len()), (Tally { reproduce: 1, differ: 2, not_comparable: 1, ..Tally::default() }, 9));
         assert!(text.contains("- (a) misprint: read 2\n- (b) no record of ours\n") && text.contains("the mean of 3 trials"), "{text}");
         let (text, _) = comparison(&table, &[Some(Ours { truth: None, ..OURS }), None, None, None], 3);
         assert!(!text.to_lowercase().contains("true errors") && text.contains("| none "), "{text}");
     }
 
-    /// Of 0, 1, ..., 40, 95 % lie from 1 to 39: these decide where a cell names their column, and our own runs elsewhere.
+    /// Of 0, 1, ..., 78, 95 % lie from 1 to 77: these decide where a cell names their column, and our own runs elsewhere.
     #[test]
     fn plausible_experiments_decide_where_there_are_some() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("e.csv");
-        std::fs::write(&path, (0..=40).fold("a\n".to_owned(), |text, value| format!("{text}{value}\n"))).unwrap();
+        std::fs::write(&path, (0..79).fold("a\n".to_owned(), |text, value| format!("{text}{value}\n"))).unwrap();
         let of = |printed: &str| Cell { predicted: Some("a".into()), ..cell(printed) };
         let cells =
-            vec![of("39.0"), of("39.6"), of("0.9"), of("80"), cell("2.5"), Cell { not_comparable: Some("put in".into()), ..of("20") }];
+            vec![of("77.0"), of("77.6"), of("0.9"), of("160"), cell("2.5"), Cell { not_comparable: Some("put in".into()), ..of("20") }];
         let table = Table { experiments: Some(super::super::Ensemble::read(&path).unwrap()), ..table(cells) };
         let (text, tally) = comparison(&table, &[Some(OURS); 6], 3);
         let ends: Vec<&str> =
             text.lines().filter(|line| line.starts_with("| r")).skip(1).filter_map(|line| line.split("| ").nth(8)).map(str::trim).collect();
         let expected =
-            ["20.00 (1.00 to 39.00)", "20.00 (1.00 to 39.00)", "20.00 (1.00 to 39.00)", "20.0 (1.0 to 39.0)", "", "20.0 (1.0 to 39.0)"];
+            ["39.00 (1.00 to 77.00)", "39.00 (1.00 to 77.00)", "39.00 (1.00 to 77.00)", "39.0 (1.0 to 77.0)", "", "39.0 (1.0 to 77.0)"];
         assert_eq!(ends, expected, "{text}");
         assert_eq!(tally, Tally { reproduce: 2, differ: 3, not_comparable: 1, ..Tally::default() }, "{text}");
-        assert!(text.contains("differs: 0.25 times") && text.contains("95 % of 41 experiments"), "{text}");
+        assert!(text.contains("differs: 0.24 times") && text.contains("95 % of 79 experiments"), "{text}");
     }
 }

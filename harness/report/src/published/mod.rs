@@ -1,33 +1,44 @@
 //! What papers printed, and which of our figures stands behind each cell.
 
 pub(crate) mod adjustment;
+mod count;
 mod ensemble;
+mod error;
 mod every_method;
 mod figure;
+mod kind;
 mod many;
 mod metric;
 mod notes;
 mod one;
+mod range;
+mod read;
+mod rules;
 mod schema;
 mod section;
 mod sweep;
+mod trials;
 mod verdict;
 
+pub use count::{Counts, Figures};
 pub use ensemble::{Ensemble, EnsembleError};
+pub use error::PublishedError;
+pub(crate) use figure::of_points;
+pub use kind::Kind;
 pub use metric::Metric;
+pub(crate) use range::Range;
+pub(crate) use read::PREDICTIONS;
+pub use read::{papers, tables};
 pub use schema::schema;
 pub(crate) use section::{section, verdicts, without_records};
 pub(crate) use sweep::{section as swept, verdicts as swept_verdicts};
+pub(crate) use trials::{Trials, ratio};
 pub use verdict::{Printed, Tally, Verdict};
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
 
-use calibench_diagnostics::{Problem, Problems};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use thiserror::Error;
 
 /// A published table: `reference/published/<paper>/table-N.toml`.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -57,6 +68,9 @@ pub struct Table {
     /// A CSV file beside the table with the figures of many plausible experiments, where the paper does not tell which was its own; see `predicted` of cells.
     #[serde(default)]
     pub ensemble: Option<String>,
+    /// What of the experiment was fitted to figures of this table, or is free: every figure that it touches is not comparable.
+    #[serde(default, rename = "fitted")]
+    pub causes: Vec<FittedCause>,
     /// The printed cells.
     #[serde(rename = "cell")]
     pub cells: Vec<Cell>,
@@ -76,6 +90,28 @@ pub struct TargetSet {
     pub except: Vec<String>,
 }
 
+/// What was fitted to some figures of a table, or is free to make them anything.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FittedCause {
+    /// What it is, as the reason that stands below the table.
+    pub cause: String,
+    /// How the figures `of` begin that it touches: cells with them are not comparable, whatever they print.
+    pub figures: Vec<String>,
+}
+
+/// A cell, by its place.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// The table's file without its ending, as in `table-4`.
+    pub table: String,
+    /// Its row.
+    pub row: String,
+    /// Its column.
+    pub column: String,
+}
+
 /// A printed figure.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -88,6 +124,12 @@ pub struct Cell {
     pub printed: String,
     /// Which of our figures is meant.
     pub metric: Metric,
+    /// How our figure is obtained; needed unless there is none (`unscored`).
+    #[serde(default)]
+    pub kind: Option<Kind>,
+    /// The cell of the same paper that stands for this printed figure, where several compare it or ratios are made of it: it is counted once.
+    #[serde(default)]
+    pub same_as: Option<Place>,
     /// The target, for figures of one target: in the first image that shows it.
     #[serde(default)]
     pub target: Option<String>,
@@ -152,6 +194,12 @@ pub struct Divisor {
 }
 
 impl Table {
+    /// What was fitted to the figure of `cell` or is free to make it anything, if so.
+    fn cause(&self, cell: &Cell) -> Option<&FittedCause> {
+        let of = cell.of.as_deref()?;
+        self.causes.iter().find(|fitted| fitted.figures.iter().any(|figure| of.starts_with(figure.as_str())))
+    }
+
     /// Whether its figures are those of adjustments.
     pub fn is_of_adjustments(&self) -> bool {
         self.cells.iter().any(|cell| cell.metric.is_of_adjustment())
@@ -179,103 +227,26 @@ impl Table {
     }
 }
 
-/// A table that cannot be read.
-#[derive(Debug, Error)]
-pub enum PublishedError {
-    /// The file or its folder.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// Its text.
-    #[error(transparent)]
-    Problems(#[from] Problems),
-    /// Its experiments.
-    #[error(transparent)]
-    Ensemble(#[from] EnsembleError),
-}
-
-/// All tables of `paper` below `folder` (`reference/published`), in the order of their file names, with these.
-///
-/// # Errors
-/// A file that cannot be read or has a mistake.
-pub fn tables(folder: &Path, paper: &str) -> Result<Vec<(String, Table)>, PublishedError> {
-    let folder = folder.join(paper);
-    let mut names: Vec<PathBuf> = match fs::read_dir(&folder) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        Err(source) => return Err(PublishedError::File { path: folder, source }),
-        Ok(entries) => {
-            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect()
-        }
-    };
-    names.sort();
-    let read = |path: PathBuf| {
-        let text = calibench_files::bounded::text(&path).map_err(|source| PublishedError::File { path: path.clone(), source })?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let mut table = parse(&path.display().to_string(), &text)?;
-        if let Some(file) = &table.ensemble {
-            table.experiments = Some(Ensemble::read(&folder.join(file))?);
-        }
-        without_column(&table)
-            .map_or(Ok(()), |problem| Err(Problems { file: path.display().to_string(), text: text.clone(), problems: vec![problem] }))?;
-        Ok((name, table))
-    };
-    names.into_iter().map(read).collect()
-}
-
-/// The papers below `folder` that have tables, sorted.
-pub fn papers(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
-    let mut names: Vec<String> = entries.filter(|e| e.path().is_dir()).filter_map(|e| e.file_name().into_string().ok()).collect();
-    names.sort();
-    names
-}
-
-fn parse(file: &str, text: &str) -> Result<Table, Problems> {
-    let fail = |problem| Problems { file: file.to_owned(), text: text.to_owned(), problems: vec![problem] };
-    let table: Table = toml::from_str(text).map_err(|e| fail(Problem::new(e.span().unwrap_or(0..0), e.message())))?;
-    for (index, cell) in table.cells.iter().enumerate() {
-        if table.cells[..index].iter().any(|other| (&other.row, &other.column) == (&cell.row, &cell.column)) {
-            return Err(fail(Problem::new(0..0, format!("row `{}`, column `{}` is given twice", cell.row, cell.column))));
-        }
-        let place = text.find(&cell.printed).unwrap_or(0);
-        if !table.columns.contains(&cell.column) {
-            let message =
-                format!("row `{}` has a cell in column `{}`, which is none of {}", cell.row, cell.column, table.columns.join(", "));
-            return Err(fail(Problem::new(place..place, message).nearest(&cell.column, table.columns.iter().map(String::as_str))));
-        }
-        if Printed::parse(&cell.printed).is_none() && cell.not_comparable.is_none() {
-            let message = format!("`{}` is no number: expected digits as in 22.520 or 1/18.9, or `not_comparable`", cell.printed);
-            return Err(fail(Problem::new(place..place + cell.printed.len(), message)));
-        }
-        if let Some(message) = adjustment::unknown(cell) {
-            return Err(fail(Problem::new(place..place, format!("row `{}`: {message}", cell.row))));
-        }
-        if cell.metric.is_of_one_target() != cell.target.is_some() {
-            let message = format!("row `{}`: figures of one target have a `target`, statistics have none", cell.row);
-            return Err(fail(Problem::new(place..place, message)));
+#[cfg(test)]
+impl Table {
+    /// A table of no cell.
+    pub(crate) fn bare() -> Self {
+        Self {
+            title: "T".into(),
+            source: "S".into(),
+            unit: "px".into(),
+            scenario: "s".into(),
+            method: "m".into(),
+            columns: vec!["c".into()],
+            findings: Vec::new(),
+            beside: Vec::new(),
+            sets: Vec::new(),
+            ensemble: None,
+            causes: Vec::new(),
+            cells: Vec::new(),
+            experiments: None,
         }
     }
-    Ok(table)
-}
-
-/// The first cell that names a column which its table's experiments have not.
-fn without_column(table: &Table) -> Option<Problem> {
-    let named = |cell: &Cell| Some((cell.predicted.clone()?, format!("row `{}`, column `{}`", cell.row, cell.column)));
-    let experiments = table.experiments.as_ref();
-    let (column, cell) = table
-        .cells
-        .iter()
-        .filter_map(named)
-        .find(|(column, _)| experiments.is_none_or(|experiments| experiments.range(column).is_none()))?;
-    let Some(experiments) = experiments else {
-        return Some(Problem::new(0..0, format!("{cell}: `predicted` needs a table with an `ensemble`")));
-    };
-    let message = format!("{cell}: the `ensemble` has no column `{column}`");
-    Some(Problem::new(0..0, message).nearest(&column, experiments.names()))
 }
 
 #[cfg(test)]
@@ -287,6 +258,8 @@ impl Cell {
             column: "c".into(),
             printed: printed.into(),
             metric,
+            kind: (metric != Metric::Unscored).then_some(Kind::Prediction),
+            same_as: None,
             target: None,
             except: Vec::new(),
             plus: 0.0,
@@ -303,94 +276,5 @@ impl Cell {
             consistent_within: None,
             not_comparable: None,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn printed_figures_carry_their_digits() {
-        assert_eq!(Printed::parse("22.520"), Some(Printed { value: 22.52, unit: 0.001 }));
-        assert_eq!(Printed::parse("-7"), Some(Printed { value: -7.0, unit: 1.0 }));
-        let fraction = Printed::parse("1/18.9").unwrap();
-        assert!((fraction.value - 1.0 / 18.9).abs() < 1e-15 && (fraction.unit - (1.0 / 18.8 - 1.0 / 18.9)).abs() < 1e-15);
-        for bad in ["", "x", "1/0", "1/0.1", "NaN", "1/2/3"] {
-            assert_eq!(Printed::parse(bad), None, "{bad}");
-        }
-    }
-
-    #[test]
-    fn a_coordinate_reproduces_within_half_a_unit_of_its_last_digit() {
-        let cell = |printed: &str, why: Option<&str>| Cell {
-            target: Some("1".into()),
-            units: None,
-            consistent_within: None,
-            not_comparable: why.map(str::to_owned),
-            ..Cell::bare(printed, Metric::X)
-        };
-        assert_eq!(cell("22.520", None).verdict(Some(22.5205)), Verdict::Reproduces);
-        assert_eq!(cell("22.520", None).verdict(Some(22.520_51)), Verdict::Differs);
-        let computed = Cell { metric: Metric::Dx, ..cell("0.020", None) };
-        assert_eq!(computed.verdict(Some(0.021)), Verdict::Reproduces);
-        assert_eq!(computed.verdict(Some(0.0211)), Verdict::Differs);
-        assert!(matches!(cell("22.520", None).verdict(None), Verdict::NotComparable(_)));
-        assert_eq!(cell("22.520", Some("other scale")).verdict(Some(22.52)), Verdict::NotComparable("other scale".into()));
-    }
-
-    #[test]
-    fn mistakes_have_a_place() {
-        let text = "title='t'\nsource='s'\nunit='px'\nscenario='a'\nmethod='m'\ncolumns=['C']\n[[cell]]\nrow='1'\ncolumn='D'\nprinted='2.5'\nmetric='x'\ntarget='1'\n";
-        assert!(parse("t.toml", text).unwrap_err().to_string().contains("t.toml:10"));
-        let text = text.replace("column='D'", "colum='C'");
-        assert!(parse("t.toml", &text).unwrap_err().to_string().starts_with("t.toml:9:1: unknown field `colum`"));
-    }
-
-    #[test]
-    fn tables_are_read_in_the_order_of_their_files() {
-        let folder = tempfile::tempdir().unwrap();
-        let paper = folder.path().join("paper");
-        fs::create_dir(&paper).unwrap();
-        let head = |title: &str| format!("title='{title}'\nsource='s'\nunit='px'\nscenario='a'\nmethod='m'\ncolumns=['C']\n");
-        let text = |title: &str| head(title) + "[[cell]]\nrow='1'\ncolumn='C'\nprinted='2.5'\nmetric='mean_dx'\n";
-        for (name, title) in [("table-2.toml", "second"), ("table-1.toml", "first"), ("notes.txt", "none")] {
-            fs::write(paper.join(name), text(title)).unwrap();
-        }
-        let found = tables(folder.path(), "paper").unwrap();
-        let names: Vec<(&str, &str)> = found.iter().map(|(name, table)| (name.as_str(), table.title.as_str())).collect();
-        assert_eq!(names, [("table-1", "first"), ("table-2", "second")]);
-        assert_eq!(papers(folder.path()), ["paper"]);
-        assert!(tables(folder.path(), "absent").unwrap().is_empty() && papers(&folder.path().join("absent")).is_empty());
-        fs::write(folder.path().join("file"), "").unwrap();
-        assert!(matches!(tables(folder.path(), "file"), Err(PublishedError::File { .. })), "a folder that cannot be read is no empty one");
-        assert_eq!(papers(folder.path()), ["paper"]);
-    }
-
-    #[test]
-    fn cells_that_contradict_their_table_are_refused() {
-        let head = "title='t'\nsource='s'\nunit='px'\nscenario='a'\nmethod='m'\ncolumns=['C', 'D']\n";
-        let cell = |column: &str, printed: &str, rest: &str| format!("[[cell]]\nrow='1'\ncolumn='{column}'\nprinted='{printed}'\n{rest}\n");
-        let read = |cells: &[String]| parse("t.toml", &(head.to_owned() + &cells.concat())).map_err(|problems| problems.to_string());
-        let (mean, one) = ("metric='mean_dx'", "metric='x'\ntarget='7'");
-        let table = read(&[
-            cell("C", "2.5", mean),
-            cell("D", "2.5", one),
-            cell("D", "no", "metric='mean_dx'\nnot_comparable='text'").replace("row='1'", "row='2'"),
-        ]);
-        let table = table.unwrap();
-        assert_eq!((table.rows(), table.is_of_adjustments()), (vec!["1", "2"], false));
-        for (cells, expected) in [
-            (vec![cell("C", "2.5", mean), cell("C", "2.5", mean)], "row `1`, column `C` is given twice"),
-            (vec![cell("E", "2.5", mean)], "which is none of C, D"),
-            (vec![cell("C", "many", mean)], "t.toml:10:10: `many` is no number"),
-            (vec![cell("C", "2.5", "metric='x'")], "figures of one target have a `target`"),
-            (vec![cell("C", "2.5", "metric='mean_dx'\ntarget='7'")], "statistics have none"),
-        ] {
-            let found = read(&cells).unwrap_err();
-            assert!(found.contains(expected), "{found}");
-        }
-        let adjusted = read(&[cell("C", "2.5", mean), cell("D", "1", "metric='iop_value'")]).unwrap();
-        assert!(adjusted.is_of_adjustments());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::figure::of_points;
 use super::notes::Notes;
-use super::{Cell, Printed, Table, Tally, Verdict};
+use super::{Cell, Kind, Printed, Table, Tally, Verdict};
 use crate::load::Loaded;
 use crate::markdown::{MarkdownTable, fixed, fraction};
 
@@ -18,12 +18,12 @@ pub fn comparison(table: &Table, ours: &[Option<f64>], named: bool) -> (String, 
     for column in &table.columns {
         header.extend([format!("{column} printed"), format!("{column} ours")]);
     }
-    header.push("verdict".to_owned());
+    header.extend(["kind", "verdict"].map(str::to_owned));
     let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
     let (mut tally, mut notes) = (Tally::default(), Notes::default());
     for label in table.rows() {
         let mut cells = vec![label.to_owned()];
-        let (mut verdicts, mut misprints) = (Vec::new(), String::new());
+        let (mut verdicts, mut misprints, mut kinds) = (Vec::new(), String::new(), Vec::new());
         for column in &table.columns {
             let of = |(cell, _): &(&Cell, &Option<f64>)| cell.row == label && cell.column == *column;
             let Some((cell, &ours)) = table.cells.iter().zip(ours).find(of) else {
@@ -32,6 +32,7 @@ pub fn comparison(table: &Table, ours: &[Option<f64>], named: bool) -> (String, 
             };
             let verdict = cell.verdict(ours);
             tally.count(&verdict);
+            kinds.push(cell.kind);
             cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
             verdicts.push((column.as_str(), verdict));
             if let Some(misprint) = &cell.misprint {
@@ -40,7 +41,7 @@ pub fn comparison(table: &Table, ours: &[Option<f64>], named: bool) -> (String, 
         }
         let columns = if named { columns_of_gravest(&verdicts) } else { String::new() };
         let verdicts = verdicts.into_iter().map(|(_, verdict)| verdict).collect();
-        cells.push(gravest(verdicts, &mut notes) + &columns + &misprints);
+        cells.extend([words(&kinds), gravest(verdicts, &mut notes) + &columns + &misprints]);
         rows.row(cells);
     }
     let text = format!(
@@ -60,6 +61,17 @@ pub fn comparison(table: &Table, ours: &[Option<f64>], named: bool) -> (String, 
 pub fn figure(table: &Table, main: &Loaded, cell: &Cell) -> Option<f64> {
     let method = main.method(cell.method.as_deref().unwrap_or(&table.method))?;
     of_points(&main.first.points, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus)
+}
+
+/// The kinds of a row's cells, each once.
+pub fn words(kinds: &[Option<Kind>]) -> String {
+    let mut words: Vec<&str> = Vec::new();
+    for word in kinds.iter().flatten().map(|kind| kind.word()) {
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words.join(", ")
 }
 
 /// The columns of the gravest verdicts of a row, as in ": x, y"; nothing where all are as grave.

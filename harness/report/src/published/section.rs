@@ -2,18 +2,19 @@
 
 use calibench_records::description::Study;
 
-use super::adjustment::ours;
+use super::adjustment::of_all_cells;
 use super::figure::Ours;
-use super::{Table, Tally, Verdict, every_method, many, one};
-use crate::load::adjustments::Summaries;
+use super::{Cell, Table, Tally, Verdict, every_method, many, one};
 use crate::load::{LoadError, Loaded};
 
 /// A section of a page, and the verdicts of its cells.
 pub struct Section {
     /// Markdown.
     pub text: String,
-    /// Its verdicts.
-    pub tally: Tally,
+    /// The verdict of each cell; none where nothing could be compared.
+    pub verdicts: Vec<Verdict>,
+    /// Our figure for each cell, or none.
+    pub figures: Vec<Option<f64>>,
 }
 
 /// The section of `table`, whose scenario's records are `main`; other scenarios stand `beside` it.
@@ -22,22 +23,17 @@ pub struct Section {
 /// Records that cannot be read.
 pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> Result<Section, LoadError> {
     let mut text = head(table);
-    let compared = if table.is_of_adjustments() { adjustments(table, main) } else { points(table, main)? };
-    let tally = match compared {
-        Ok((comparison, tally)) => {
-            text.push_str(&comparison);
-            tally
-        }
-        Err(nothing) => {
-            text.push_str(&nothing);
-            Tally::default()
-        }
-    };
+    let compared = if table.is_of_adjustments() { adjustments(table, main)? } else { points(table, main)? };
+    match compared {
+        Ok((comparison, _)) | Err(comparison) => text.push_str(&comparison),
+    }
     text.push_str(&findings(table));
     if table.is_of_points() {
         text.push_str(&every_method::section(table, main, beside));
     }
-    Ok(Section { text, tally })
+    let judged = judged(table, main)?.unwrap_or_default();
+    let (verdicts, figures) = judged.into_iter().unzip();
+    Ok(Section { text, verdicts, figures })
 }
 
 /// Heading, source and unit.
@@ -58,14 +54,15 @@ fn points(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
     Ok(Ok(many::comparison(table, &many::of_all_trials(table, main)?, main.scores.trials)))
 }
 
-fn adjustments(table: &Table, main: &Loaded) -> Compared {
+fn adjustments(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
     let Some(found) = &main.calibrations else {
-        return Err(no_adjustments(table));
+        return Ok(Err(no_adjustments(table)));
     };
+    let figures = of_all_cells(table, main, found)?;
     if is_of_print(main) {
-        return Ok(one::comparison(table, &first(&of_adjustments(table, main, found)), true));
+        return Ok(Ok(one::comparison(table, &first(&figures), true)));
     }
-    Ok(many::comparison(table, &of_adjustments(table, main, found), found.trials))
+    Ok(Ok(many::comparison(table, &figures, found.trials)))
 }
 
 /// Whether nothing was measured, so that there are no runs which differ.
@@ -82,25 +79,29 @@ fn of_one(table: &Table, main: &Loaded) -> Vec<Option<f64>> {
     table.cells.iter().map(|cell| one::figure(table, main, cell)).collect()
 }
 
-/// Our figure for each cell.
-fn of_adjustments(table: &Table, main: &Loaded, found: &Summaries) -> Vec<Option<Ours>> {
-    let pitch = main.scenario.adjusted().map_or(f64::NAN, |(_, told)| told.pitch_um);
-    table.cells.iter().map(|cell| ours(found, cell, &table.method, pitch)).collect()
-}
-
 /// The verdict of each cell of `table`, as its section states them; `None` where the records `main` hold nothing of its method.
 ///
 /// # Errors
 /// Records that cannot be read.
 pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, LoadError> {
-    let of_one_run = |figures: &[Option<f64>]| table.cells.iter().zip(figures).map(|(cell, ours)| cell.verdict(*ours)).collect();
-    let of_many =
-        |figures: &[Option<Ours>]| table.cells.iter().zip(figures).map(|(cell, ours)| many::verdict(table, cell, ours.as_ref())).collect();
-    if table.is_of_adjustments() && is_of_print(main) {
-        return Ok(main.calibrations.as_ref().map(|found| of_one_run(&first(&of_adjustments(table, main, found)))));
-    }
+    Ok(judged(table, main)?.map(|judged| judged.into_iter().map(|(verdict, _)| verdict).collect()))
+}
+
+/// The verdict of each cell, and our figure: of one run, or the mean or median of many.
+type Judged = Vec<(Verdict, Option<f64>)>;
+
+fn judged(table: &Table, main: &Loaded) -> Result<Option<Judged>, LoadError> {
+    let of_one_run =
+        |figures: &[Option<f64>]| -> Judged { table.cells.iter().zip(figures).map(|(cell, ours)| (cell.verdict(*ours), *ours)).collect() };
+    let of_many = |figures: &[Option<Ours>]| -> Judged {
+        let of =
+            |(cell, ours): (&Cell, &Option<Ours>)| (many::verdict(table, cell, ours.as_ref()), many::middle(table, cell, ours.as_ref()));
+        table.cells.iter().zip(figures).map(of).collect()
+    };
     if table.is_of_adjustments() {
-        return Ok(main.calibrations.as_ref().map(|found| of_many(&of_adjustments(table, main, found))));
+        let Some(found) = &main.calibrations else { return Ok(None) };
+        let figures = of_all_cells(table, main, found)?;
+        return Ok(Some(if is_of_print(main) { of_one_run(&first(&figures)) } else { of_many(&figures) }));
     }
     if main.method(&table.method).is_none() {
         return Ok(None);
@@ -113,7 +114,7 @@ pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, Lo
 
 /// The section of a table of adjustments whose scenario was not run.
 pub fn without_records(table: &Table) -> Section {
-    Section { text: head(table) + &no_adjustments(table) + &findings(table), tally: Tally::default() }
+    Section { text: head(table) + &no_adjustments(table) + &findings(table), verdicts: Vec::new(), figures: Vec::new() }
 }
 
 fn no_adjustments(table: &Table) -> String {

@@ -157,12 +157,12 @@ impl Cell {
         }
     }
 
-    /// Compares a printed figure of a single run with the mean of many: it reproduces within `range` of `mean`, widened by half a unit of its last digit; both in the unit of the printed figure.
-    pub fn verdict_within(&self, mean: f64, range: f64) -> Verdict {
+    /// Compares a printed figure of a single run with where many lie: it reproduces from `low` to `high`, in the unit of the printed figure, widened by half a unit of its last digit.
+    pub fn verdict_between(&self, low: f64, high: f64) -> Verdict {
         match (&self.not_comparable, Printed::parse(&self.printed)) {
             (Some(why), _) => Verdict::NotComparable(why.clone()),
             (None, None) => Verdict::NotComparable("the printed figure cannot be read".into()),
-            (None, Some(printed)) if (mean - printed.value).abs() <= range + 0.5 * printed.unit => Verdict::Reproduces,
+            (None, Some(printed)) if (low - 0.5 * printed.unit..=high + 0.5 * printed.unit).contains(&printed.value) => Verdict::Reproduces,
             _ => Verdict::Differs,
         }
     }
@@ -202,13 +202,13 @@ mod tests {
             assert_eq!(cell("0.7", metric).verdict(Some(ours)), expected, "{metric:?} {ours}");
         }
         let said = |verdict| matches!(verdict, Verdict::NotComparable(why) if why.contains("cannot be read"));
-        assert!(said(cell("?", Metric::X).verdict(Some(1.0))) && said(cell("?", Metric::X).verdict_within(1.0, 9.0)));
+        assert!(said(cell("?", Metric::X).verdict(Some(1.0))) && said(cell("?", Metric::X).verdict_between(-8.0, 10.0)));
         assert_eq!(cell("0.7", Metric::X).verdict(None), Verdict::NotComparable("no record of ours".into()));
     }
 
     #[test]
     fn a_single_run_may_lie_anywhere_in_the_range_of_runs() {
-        let within = |printed: &str, mean, range| cell(printed, Metric::MeanDx).verdict_within(mean, range);
+        let within = |printed: &str, mean: f64, range: f64| cell(printed, Metric::MeanDx).verdict_between(mean - range, mean + range);
         assert_eq!(
             (within("2.0", 1.5, 0.5), within("2.0", 2.5, 0.5), within("2.0", 1.5, 0.25)),
             (Verdict::Reproduces, Verdict::Reproduces, Verdict::Differs)
@@ -223,7 +223,7 @@ mod tests {
             (Verdict::Differs, Verdict::Reproduces, Verdict::Differs)
         );
         let told = Cell { not_comparable: Some("another axis".into()), ..cell("2.0", Metric::MeanDx) };
-        assert_eq!(told.verdict_within(2.0, 1.0), Verdict::NotComparable("another axis".into()));
+        assert_eq!(told.verdict_between(1.0, 3.0), Verdict::NotComparable("another axis".into()));
     }
 
     /// A model's prediction is consistent within what the cell allows, whatever the digits; a count is met or not.

@@ -15,9 +15,9 @@ pub fn section(loaded: &Loaded, OnPage { stem, .. }: OnPage<'_>) -> Shown {
     }
     if let Some(figures) = scene_figures::figures(loaded) {
         shown.text.push_str(&format!(
-            "The image of the first trial with truth, approximate positions and the results of one method, and {}, with all results:\n\n\
-             ![Image, approximations and truth]({stem}.png)\n\n![Targets with all results]({stem}-targets.png)\n\n",
-            figures.shown
+            "The image of the first trial with {0}, and {1}, with all results:\n\n\
+             ![The image with {0}]({stem}.png)\n\n![Targets with all results]({stem}-targets.png)\n\n",
+            figures.marked, figures.shown
         ));
         shown.pictures.push((format!("{stem}.png"), figures.overview));
         shown.pictures.push((format!("{stem}-targets.png"), figures.panels));

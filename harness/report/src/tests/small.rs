@@ -39,6 +39,7 @@ row = "a"
 column = "dx"
 printed = "0.03"
 metric = "dx"
+kind = "prediction"
 target = "a"
 
 [[cell]]
@@ -46,6 +47,7 @@ row = "a"
 column = "dy"
 printed = "0.10"
 metric = "dy"
+kind = "prediction"
 target = "a"
 
 [[cell]]
@@ -53,6 +55,7 @@ row = "b"
 column = "dx"
 printed = "-0.01"
 metric = "dx"
+kind = "prediction"
 target = "b"
 
 [[cell]]
@@ -60,6 +63,7 @@ row = "b"
 column = "dy"
 printed = "7"
 metric = "dy"
+kind = "prediction"
 target = "b"
 not_comparable = "another axis"
 
@@ -68,12 +72,14 @@ row = "all"
 column = "dx"
 printed = "0.022"
 metric = "rmse_x"
+kind = "prediction"
 
 [[cell]]
 row = "all"
 column = "dy"
 printed = "0.039"
 metric = "rmse_xy"
+kind = "prediction"
 "#;
 
 fn description() -> Description {

@@ -77,7 +77,7 @@ pub fn heights(found: &Summaries, views: &Views) -> Option<Canvas> {
     let room = 0.12 * (span[1] - span[0]).max(1e-9);
     let y = [span[0] - room, span[1] + room];
     let mut canvas = Canvas::new((2 * SIDE + 250) as u32, 560);
-    canvas.text(&format!("Object point heights, block `{set}`, {method}"), 20, (90, 22));
+    canvas.text(&format!("Object point heights, block {set}, {method}"), 20, (90, 22));
     let unit = &views.unit;
     let names = ["X", "Y", "Z", "standard deviation of Z"].map(|name| format!("{name}, {unit}"));
     canvas.say_as(names.iter().map(String::as_str));

@@ -9,7 +9,7 @@ use calibench_records::stored::Table;
 use super::tables;
 use crate::load::adjustments::{Summaries, load};
 use crate::published::adjustment::ours;
-use crate::published::{Cell, Metric};
+use crate::published::{Cell, Metric, Trials};
 use crate::tests::small::new_table;
 
 fn calibrated(method: usize, c: [f64; 3], rmse_xy: f64, failed: bool) -> Calibrated {
@@ -29,6 +29,10 @@ fn calibrated(method: usize, c: [f64; 3], rmse_xy: f64, failed: bool) -> Calibra
 
 /// `pixel` and `good`, three trials, and a fourth in which `good` failed.
 fn summaries() -> Summaries {
+    summaries_and_trials().0
+}
+
+fn summaries_and_trials() -> (Summaries, Trials) {
     let folder = tempfile::tempdir().unwrap();
     let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
@@ -41,7 +45,8 @@ fn summaries() -> Summaries {
         writer.trial(number as u64, &all).unwrap();
     }
     writer.finish().unwrap().finish().unwrap();
-    load(folder.path(), "s").unwrap().unwrap()
+    let found = load(folder.path(), "s").unwrap().unwrap();
+    (found, Trials::of_folder(folder.path(), "s", None).unwrap())
 }
 
 fn cell(metric: Metric) -> Cell {
@@ -55,13 +60,15 @@ fn close(found: f64, expected: f64) {
 /// Reported: 0.5, 1 and 0.25. True errors: squares 1, 4, 9 against 4, 1, 4, whose ratio and interval are those of `statistics::running`'s test.
 #[test]
 fn reduction_factors_are_paired_with_the_reference_trial_by_trial() {
-    let found = summaries();
+    let (found, trials) = summaries_and_trials();
     for metric in [Metric::SigmaRatio, Metric::MeanSigmaRatio] {
-        let figure = ours(&found, &cell(metric), "good", 5.0).unwrap();
+        let figure = ours(&found, &trials, &cell(metric), "good", 5.0).unwrap();
         close(figure.one, 0.5);
         close(figure.mean, 1.75 / 3.0);
+        let range = figure.range.unwrap();
+        close(range.low, 0.25);
+        close(range.high, 1.0);
         // Deviations -1/12, 5/12, -1/3: the variance of one run is 42/144 / 2.
-        close(figure.scatter.unwrap(), (42.0_f64 / 288.0).sqrt());
         close(figure.half.unwrap(), 4.302_652_73 * (42.0_f64 / 288.0 / 3.0).sqrt());
         let (ratio, half) = figure.truth.unwrap();
         close(ratio, (14.0_f64 / 9.0).sqrt());
@@ -71,32 +78,32 @@ fn reduction_factors_are_paired_with_the_reference_trial_by_trial() {
 
 #[test]
 fn sigmas_are_told_in_their_unit_and_beside_true_errors() {
-    let found = summaries();
-    let sigma = ours(&found, &cell(Metric::IopSigma), "good", 5.0).unwrap();
+    let (found, trials) = summaries_and_trials();
+    let sigma = ours(&found, &trials, &cell(Metric::IopSigma), "good", 5.0).unwrap();
     close(sigma.mean, 0.04 / 3.0);
     close(sigma.truth.unwrap().0, (14e-6_f64 / 3.0).sqrt());
     // Half of the interval of the mean square, over twice the root: 4.302653 * sqrt(49 / 3) / sqrt(3) * 1e-6 / 2 / rms.
     close(sigma.truth.unwrap().1.unwrap(), 4.302_652_73 * 7.0 / 3.0 * 1e-6 / 2.0 / (14e-6_f64 / 3.0).sqrt());
-    let pixels = ours(&found, &cell(Metric::IopSigmaPx), "good", 5.0).unwrap();
+    let pixels = ours(&found, &trials, &cell(Metric::IopSigmaPx), "good", 5.0).unwrap();
     close(pixels.mean, 0.04 / 3.0 * 200.0);
     close(pixels.half.unwrap(), sigma.half.unwrap() * 200.0);
-    let value = ours(&found, &cell(Metric::IopValue), "good", 5.0).unwrap();
+    let value = ours(&found, &trials, &cell(Metric::IopValue), "good", 5.0).unwrap();
     close(value.one, 16.51);
     close(value.mean, 16.52);
-    close(value.scatter.unwrap(), 0.01);
+    close(value.range.unwrap().high, 16.53);
 }
 
 #[test]
 fn errors_of_check_points_are_told_over_the_mean_distance() {
-    let found = summaries();
-    let relative = ours(&found, &cell(Metric::RelativeXy), "good", 5.0).unwrap();
+    let (found, trials) = summaries_and_trials();
+    let relative = ours(&found, &trials, &cell(Metric::RelativeXy), "good", 5.0).unwrap();
     close(relative.one, 0.001);
     close(relative.mean, 0.006 / 4.0);
-    let ratio = ours(&found, &cell(Metric::RelativeXyRatio), "good", 5.0).unwrap();
+    let ratio = ours(&found, &trials, &cell(Metric::RelativeXyRatio), "good", 5.0).unwrap();
     close(ratio.mean, 2.5 / 3.0);
     // Against the truth: the ratio of root mean squares.
     close(ratio.truth.unwrap().0, (41.0_f64 / 36.0).sqrt());
-    assert_eq!(ours(&found, &cell(Metric::RelativeZ), "good", 5.0), None, "there is no such figure");
+    assert_eq!(ours(&found, &trials, &cell(Metric::RelativeZ), "good", 5.0), None, "there is no such figure");
 }
 
 #[test]

@@ -52,13 +52,19 @@ fn picture(panels: &[(&str, Vectors)]) -> Canvas {
     let all = || panels.iter().flat_map(|(_, vectors)| vectors);
     let span = |axis: usize| all().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (at, _)| [a.min(at[axis]), b.max(at[axis])]);
     let ([left, right], [low, high]) = (span(1), span(2));
-    let room = |a: f64, b: f64| 0.12 * (b - a).max(1e-3);
-    let (x, y) = ([left - room(left, right), right + room(left, right)], [low - 3.0 * room(low, high), high + 3.0 * room(low, high)]);
-    let mut canvas = Canvas::new((WIDTH + 130) as u32, (panels.len() as i32 * STEP + 40) as u32);
+    // The longest arrow stays within the frame, wherever it starts.
+    let room = |a: f64, b: f64, side: i32| (b - a).max(1e-3) * (LONGEST + 8.0) / (f64::from(side) - 2.0 * (LONGEST + 8.0));
+    let (across, up) = (room(left, right, WIDTH), room(low, high, HEIGHT));
+    let (x, y) = ([left - across, right + across], [low - up, high + up]);
+    // Many panels stand in two columns, so that they are seen together.
+    let columns = if panels.len() > 3 { 2 } else { 1 };
+    let rows = panels.len().div_ceil(columns) as i32;
+    let mut canvas = Canvas::new((columns as i32 * (WIDTH + 130)) as u32, (rows * STEP + 40) as u32);
     for (place, (method, vectors)) in panels.iter().enumerate() {
-        let axes = Axes { at: [80, 70 + place as i32 * STEP, WIDTH, HEIGHT], x, y };
+        let (column, row) = ((place % columns) as i32, (place / columns) as i32);
+        let axes = Axes { at: [80 + column * (WIDTH + 130), 70 + row * STEP, WIDTH, HEIGHT], x, y };
         let longest = vectors.iter().map(|(_, e)| e[1].hypot(e[2])).fold(0.0, f64::max).max(1e-12);
-        canvas.text(&format!("{method}: longest {} cm", plain(100.0 * longest)), 17, (80, (axes.at[1] - 50) as u32));
+        canvas.text(&format!("{method}: longest {} cm", plain(100.0 * longest)), 17, (axes.at[0] as u32, (axes.at[1] - 50) as u32));
         let mut marks = Vec::new();
         canvas.paint(|area| {
             axes.vertical(area, "Z");
@@ -70,7 +76,7 @@ fn picture(panels: &[(&str, Vectors)]) -> Canvas {
                 arrow(area, from, to);
                 marks.push((Mark::Dot, BLACK, (f64::from(from.0), f64::from(from.1))));
             }
-            write(area, "arrows: Y and Z of the error", (axes.at[0] + WIDTH - 6, axes.at[1] + 12), HPos::Right);
+            write(area, "arrows: Y and Z of the error", (axes.at[0] + WIDTH, axes.at[1] - 14), HPos::Right);
         });
         canvas.marks(&marks);
     }

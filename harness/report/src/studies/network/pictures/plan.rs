@@ -7,6 +7,7 @@ use plotters::style::text_anchor::HPos;
 use crate::axes::Axes;
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::field::{arrow, write};
+use crate::labels::{Names, along};
 use crate::sides::{Side, Sides, around};
 
 const HEIGHT: i32 = 460;
@@ -37,18 +38,23 @@ pub fn plan(views: &Views) -> Option<Canvas> {
     let object = if views.extent.is_some() { "wall" } else { "points" };
     canvas.text("The network from above", 20, (70, 20));
     canvas.text(&format!("The {object} from the front"), 20, (front.at[0] as u32, 20));
-    let mut marks = Vec::new();
+    let (mut marks, mut names) = (Vec::new(), Names::default());
+    let sights: Vec<[(i32, i32); 2]> = views
+        .stations
+        .iter()
+        .map(|station| {
+            let (at, by) = ((across.of(&station.centre), depth.of(&station.centre)), SIGHT * (far - near));
+            let to = (at.0 + by * across.along(&station.sight), at.1 + by * depth.along(&station.sight));
+            [axes.place(at.0, at.1), axes.place(to.0, to.1)]
+        })
+        .collect();
     canvas.paint(|area| {
         axes.vertical(area, &depth.title(&views.unit));
         axes.horizontal(area, &across.title(&views.unit));
         if views.extent.is_some() {
             wall(area, &axes, views, (across, depth));
         }
-        for station in &views.stations {
-            let (at, by) = ((across.of(&station.centre), depth.of(&station.centre)), SIGHT * (far - near));
-            let to = (at.0 + by * across.along(&station.sight), at.1 + by * depth.along(&station.sight));
-            arrow(area, axes.place(at.0, at.1), axes.place(to.0, to.1));
-        }
+        sights.iter().for_each(|[from, to]| arrow(area, *from, *to));
         front.vertical(area, &sides.up.title(&views.unit));
         front.horizontal(area, &across.title(&views.unit));
     });
@@ -59,8 +65,10 @@ pub fn plan(views: &Views) -> Option<Canvas> {
         let (px, py) = axes.place(across.of(&station.centre), depth.of(&station.centre));
         let look = if station.second_step { (Mark::Diamond, COLOURS[0]) } else { (Mark::Circle, COLOURS[1]) };
         marks.push((look.0, look.1, (f64::from(px), f64::from(py))));
-        canvas.label(&station.name, 18, (beside(&axes, px, &station.name, 10), py as u32 + 14));
+        names.named.push((&station.name, (f64::from(px), f64::from(py))));
     }
+    names.others.extend(sights.iter().flat_map(along));
+    names.write(&mut canvas, &axes, 18);
     points(&mut canvas, views, (&front, &sides), &mut marks);
     canvas.marks(&marks);
     legend(&mut canvas, views, front.at[0] as u32);
@@ -89,7 +97,7 @@ pub(crate) fn wall_ends(views: &Views, (across, depth): (Side, Side)) -> [(f64, 
 /// Points without a sheet have room around them.
 fn front_axes(sides: &Sides, ends: &[[f64; 3]; 2], roomy: bool, left: i32) -> Axes {
     let ([x0, x1], [y0, y1]) = (sides.across.span(ends.iter()), sides.up.span(ends.iter()));
-    let room = if roomy { 0.06 * (x1 - x0) } else { 0.0 };
+    let room = (if roomy { 0.06 } else { 0.03 }) * (x1 - x0);
     let (x, y) = ([x0 - room, x1 + room], [y0 - room, y1 + room]);
     let width = (f64::from(HEIGHT) * (x[1] - x[0]) / (y[1] - y[0])).min(WIDEST);
     let height = width * (y[1] - y[0]) / (x[1] - x[0]);
@@ -108,21 +116,17 @@ fn mark(target: &Target, (x, y): (i32, i32)) -> (Mark, RGBColor, (f64, f64)) {
 fn points(canvas: &mut Canvas, views: &Views, (axes, sides): (&Axes, &Sides), marks: &mut Marks) {
     // Names of all would hide each other: those of control points, or of check points where these are alone.
     let named = if views.targets.iter().any(|target| target.role == Some(Role::Control)) { Role::Control } else { Role::Check };
+    let mut names = Names::default();
     for target in &views.targets {
         let (x, y) = axes.place(sides.across.of(&target.surveyed), sides.up.of(&target.surveyed));
         marks.push(mark(target, (x, y)));
         if target.role == Some(named) {
-            let left = beside(axes, x, &target.id, 8);
-            canvas.label(&target.id, 14, (left, (y - 12).max(0) as u32));
+            names.named.push((&target.id, (f64::from(x), f64::from(y))));
+        } else {
+            names.others.push((f64::from(x), f64::from(y)));
         }
     }
-}
-
-/// Where a name beside `x` begins, its letters `wide` px: to the right of it, or to the left near the right side.
-fn beside(axes: &Axes, x: i32, name: &str, wide: i32) -> u32 {
-    let room = wide * name.chars().count() as i32 + 16;
-    let left = if x + room > axes.at[0] + axes.at[2] { x - room } else { x + 10 };
-    left.max(0) as u32
+    names.write(canvas, axes, 14);
 }
 
 /// What there is, and no more.
@@ -134,7 +138,7 @@ fn legend(canvas: &mut Canvas, views: &Views, second: u32) {
     let other = if control || has(Some(Role::Check)) { "calibration alone" } else { "target" };
     let rows = [
         (70, stepped(false), Mark::Circle, COLOURS[1], station),
-        (70, stepped(true), Mark::Diamond, COLOURS[0], "station of the second step too"),
+        (70, stepped(true), Mark::Diamond, COLOURS[0], if stepped(false) { "station of the second step too" } else { "station" }),
         (second, control, Mark::Triangle, COLOURS[0], "control point of the second step"),
         (second, has(Some(Role::Check)), Mark::Cross, COLOURS[1], "check point"),
         (second, has(None), Mark::Square, GREY, other),

@@ -1,6 +1,6 @@
 //! Residuals of the first trial by image point, and of all trials by the convergence of the image.
 
-use calibench_records::description::Views;
+use calibench_records::description::{Station, Views};
 use calibench_records::figures::Quantity;
 use nalgebra::Vector3;
 use plotters::prelude::*;
@@ -70,69 +70,67 @@ fn images(area: &crate::field::Area<'_>, axes: &Axes, rows: &[(&str, &str, f64)]
     }
 }
 
-/// Root mean square residual of each image over the angle between its axis and the wall's normal, mean over the trials with the scatter of single trials.
+/// Root mean square residual of each image, the least oblique first, mean over the trials with the scatter of single trials; methods side by side.
 pub fn by_convergence(found: &Summaries, views: &Views) -> Option<Canvas> {
     let normal = Vector3::from(views.normal?);
-    let angles: Vec<f64> =
-        views.stations.iter().map(|station| (-Vector3::from(station.sight).dot(&normal)).clamp(-1.0, 1.0).acos().to_degrees()).collect();
-    let widest = angles.iter().copied().fold(10.0, f64::max);
+    let angle = |station: &Station| (-Vector3::from(station.sight).dot(&normal)).clamp(-1.0, 1.0).acos().to_degrees();
+    let mut images: Vec<(f64, &str)> = views.stations.iter().map(|station| (angle(station), &*station.name)).collect();
+    images.sort_by(|a, b| a.0.total_cmp(&b.0));
     let figure = |method: &str, name: &str| found.get(method, Quantity::ImageResidual.of(&[name])).map(|s| s.value);
-    let highest = found
-        .methods
-        .iter()
-        .flat_map(|m| views.stations.iter().filter_map(move |s| Some(figure(m, &s.name)?.mean * 1.15)))
-        .fold(0.0, f64::max);
+    let values = found.methods.iter().flat_map(|m| images.iter().filter_map(move |(_, name)| Some(figure(m, name)?.mean)));
+    let highest = values.fold(0.0, f64::max);
     if highest <= 0.0 {
         return None;
     }
-    let axes = Axes { at: [70, 70, 720, 380], x: [-2.0, widest + 4.0], y: [0.0, highest * 1.25] };
+    let axes = Axes { at: [70, 70, 1100, 380], x: [0.0, images.len() as f64], y: [0.0, highest * 1.35] };
     let rows = found.methods.len() as u32;
-    let mut canvas = Canvas::new(830, 520 + rows * 24);
+    let mut canvas = Canvas::new(1210, 520 + rows * 24);
     canvas.text("Residuals by the convergence of the image", 20, (70, 22));
-    let (mut marks, mut keys): (Vec<OwnMark<'_>>, Vec<_>) = (Vec::new(), Vec::new());
-    for (m, method) in found.methods.iter().enumerate() {
-        let look = (METHOD_MARKS[m % METHOD_MARKS.len()], COLOURS[m % COLOURS.len()]);
-        keys.push((look.0, look.1, method));
-        for (station, angle) in views.stations.iter().zip(&angles) {
-            let Some(value) = figure(method, &station.name) else { continue };
-            let (x, y) = axes.place(*angle, value.mean);
-            marks.push((Some(method), (look.0, look.1, (f64::from(x), f64::from(y)))));
-        }
-    }
     canvas.paint(|area| {
-        axes.vertical(area, "root mean square residual per axis, px; whiskers: 95 % of single trials");
-        axes.horizontal(area, "angle between the image's axis and the wall's normal, degrees");
+        axes.vertical(area, "root mean square residual per axis, px; whiskers: twice the standard deviation of single trials");
+        for (place, (angle, name)) in (0..).zip(&images) {
+            let (x, y) = axes.place(f64::from(place), axes.y[0]);
+            area.draw(&PathElement::new([(x, y), (x, axes.at[1])], RGBColor(200, 200, 200))).ok();
+            write(area, &format!("{name}: {angle:.0}\u{b0}"), (axes.place(f64::from(place) + 0.5, axes.y[0]).0, y + 16), HPos::Center);
+        }
+        write(
+            area,
+            "image: angle between its axis and the wall's normal",
+            (axes.at[0] + axes.at[2] / 2, axes.at[1] + axes.at[3] + 38),
+            HPos::Center,
+        );
     });
-    canvas.say_as(["image", "method", "angle, degrees", "RMS residual per axis, px", "95 % of single trials from", "to", "trials"]);
+    canvas.say_as([
+        "image",
+        "method",
+        "angle, degrees",
+        "RMS residual per axis, px",
+        "two deviations of single trials from",
+        "to",
+        "trials",
+    ]);
+    let mut marks: Vec<OwnMark<'_>> = Vec::new();
     for (m, method) in found.methods.iter().enumerate() {
+        let (mark, colour) = (METHOD_MARKS[m % METHOD_MARKS.len()], COLOURS[m % COLOURS.len()]);
         canvas.of(Some(method), |canvas| {
-            for (station, angle) in views.stations.iter().zip(&angles) {
-                let Some(value) = figure(method, &station.name) else { continue };
-                let scatter = 1.96 * value.deviation().unwrap_or(0.0);
-                let ends = (value.mean - scatter, value.mean + scatter);
-                canvas.paint(|area| whisker(area, &axes, *angle, ends, COLOURS[m % COLOURS.len()]));
-                let (x, y) = axes.place(*angle, value.mean);
-                let before = [&*station.name, method, &format!("{angle:.1}")];
+            for (place, (angle, name)) in images.iter().enumerate() {
+                let Some(value) = figure(method, name) else { continue };
+                let across = place as f64 + (m + 1) as f64 / (found.methods.len() + 1) as f64;
+                let scatter = 2.0 * value.deviation().unwrap_or(0.0);
+                let ends = ((value.mean - scatter).max(0.0), value.mean + scatter);
+                canvas.paint(|area| whisker(area, &axes, across, ends, colour));
+                let (x, y) = axes.place(across, value.mean);
+                marks.push((Some(method), (mark, colour, (f64::from(x), f64::from(y)))));
+                let degrees = format!("{angle:.1}");
+                let before = [*name, method.as_str(), &degrees];
                 let interval = value.deviation().map(|_| ends);
                 canvas.say_estimate((f64::from(x), f64::from(y)), &before, (value.mean, interval), &[&value.count.to_string()]);
             }
-        });
-    }
-    canvas.paint(|area| {
-        let mut named: Vec<_> = angles.iter().zip(&views.stations).collect();
-        named.sort_by(|a, b| a.0.total_cmp(b.0));
-        for (place, (angle, station)) in (0..).zip(named) {
-            let (x, y) = axes.place(*angle, axes.y[1]);
-            write(area, &station.name, (x, y + 12 + 16 * (place % 3)), HPos::Center);
-        }
-    });
-    canvas.marks_of(&marks);
-    for (row, (mark, colour, method)) in (0_u32..).zip(keys) {
-        let y = 525 + row * 24;
-        canvas.of(Some(method), |canvas| {
+            let y = 525 + m as u32 * 24;
             canvas.marks(&[(mark, colour, (90.0, f64::from(y)))]);
             canvas.text(method, 16, (110, y));
         });
     }
+    canvas.marks_of(&marks);
     Some(canvas)
 }

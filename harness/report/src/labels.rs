@@ -1,5 +1,50 @@
 //! Labels beside points that overlap neither each other nor the points.
 
+use plotters::prelude::*;
+
+use crate::axes::Axes;
+use crate::canvas::Canvas;
+
+/// Names beside points, and what else is in their way, px of the picture.
+#[derive(Default)]
+pub struct Names<'a> {
+    /// Each with its point.
+    pub named: Vec<(&'a str, (f64, f64))>,
+    /// Points that no name may cover.
+    pub others: Vec<(f64, f64)>,
+}
+
+impl Names<'_> {
+    /// Writes them, `size` px high, where they cover neither each other nor a point, within `axes`; where no room is left a name is missing.
+    pub fn write(&self, canvas: &mut Canvas, axes: &Axes, size: u32) {
+        let wide = |name: &str| 0.6 * f64::from(size) * name.chars().count() as f64 + 4.0;
+        let sizes: Vec<(f64, f64)> = self.named.iter().map(|(name, _)| (wide(name), f64::from(size))).collect();
+        let points: Vec<(f64, f64)> = self.named.iter().map(|(_, at)| *at).chain(self.others.iter().copied()).collect();
+        let [left, top, width, height] = axes.at.map(f64::from);
+        let area = Box2 { x: left + 2.0, y: top + 2.0, width: width - 4.0, height: height - 4.0 };
+        for ((name, at), found) in self.named.iter().zip(place(&points, &sizes, area)) {
+            if let Some(found) = found {
+                let near = (at.0.clamp(found.x, found.x + found.width), at.1.clamp(found.y, found.y + found.height));
+                if (near.0 - at.0).hypot(near.1 - at.1) > POINT + 2.0 * STEP {
+                    // It stands so far off that a line tells whose it is.
+                    let ends = [*at, near].map(|(x, y)| (x.round() as i32, y.round() as i32));
+                    canvas.paint(|area| {
+                        area.draw(&PathElement::new(ends, RGBColor(150, 150, 150))).ok();
+                    });
+                }
+                canvas.label(name, size, (found.x as u32 + 2, (found.y + 0.5 * found.height) as u32));
+            }
+        }
+    }
+}
+
+/// Points of a line, close together.
+pub fn along([from, to]: &[(i32, i32); 2]) -> impl Iterator<Item = (f64, f64)> + use<> {
+    let ([x, y], [dx, dy]) = ([from.0, from.1].map(f64::from), [to.0 - from.0, to.1 - from.1].map(f64::from));
+    let steps = (dx.hypot(dy) / 8.0).ceil() as i32;
+    (0..=steps).map(move |step| f64::from(step) / f64::from(steps.max(1))).map(move |part| (x + part * dx, y + part * dy))
+}
+
 /// An upright box, px of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Box2 {
@@ -30,7 +75,7 @@ const POINT: f64 = 9.0;
 const STEP: f64 = 7.0;
 
 /// A box of its `sizes` (width, height) for each of `points`, near it and within `area`: the nearest free place on growing rings, in the order given.
-/// `None` where the area has no room left.
+/// Points beyond the sizes keep their places free and have no box. `None` where the area has no room left.
 pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], area: Box2) -> Vec<Option<Box2>> {
     let mut taken: Vec<Box2> =
         points.iter().map(|(x, y)| Box2 { x: x - POINT, y: y - POINT, width: 2.0 * POINT, height: 2.0 * POINT }).collect();
