@@ -24,8 +24,15 @@ const NETWORK: &str = "The network of stations that explains the fitted columns,
 /// What stands above changed cameras.
 const VARIANTS: &str = "Each camera with something changed: in the image against the camera as printed, after the best rotation and where neither folds over; and what it predicts in the same network. \
                         *Misfit*: root mean square of predicted less printed absolute errors.";
-/// What stands above changed cameras that others are fitted to.
-const AGAIN: &str = "The network fitted again, with a camera changed.";
+/// What stands above readings and cameras with which the network is fitted again.
+const AGAIN: &str = "The network fitted again: with another reading of the print, or with a camera changed. *Misfit* is that of the fitted columns, and of each column's errors; *near*: \
+                     how many errors of columns that are not fitted are predicted within what the scenario says.";
+/// What a column's errors have where the network is that of the scenario, and where it is fitted again.
+const OF_COLUMN: [(&str, [Quantity; 2]); 3] = [
+    ("misfit", [Quantity::Misfit, Quantity::MisfitOf]),
+    ("planimetric", [Quantity::PredictedPlanimetric, Quantity::PredictedPlanimetricOf]),
+    ("Z", [Quantity::PredictedZ, Quantity::PredictedZOf]),
+];
 
 /// The section of `loaded`, whose sets are `sets`, and its pictures, whose names begin with `stem`.
 pub fn section(loaded: &Loaded, sets: &Printed, stem: &str) -> (String, Pictures) {
@@ -45,7 +52,7 @@ pub fn section(loaded: &Loaded, sets: &Printed, stem: &str) -> (String, Pictures
         text.push_str(&format!("### Changed cameras\n\n{VARIANTS}\n\n{}\n", by_set(found, &sets.variants)));
     }
     if !sets.again.is_empty() {
-        text.push_str(&format!("### Fitted again\n\n{AGAIN}\n\n{}\n", by_figure(found, &sets.again, &[Group::Network])));
+        text.push_str(&format!("### Fitted again\n\n{AGAIN} Unit: {}.\n\n{}\n", sets.unit, again(found, sets)));
     }
     (text + &failures(found), drawn.pictures)
 }
@@ -88,6 +95,30 @@ fn by_set(found: &Summaries, sets: &[String]) -> String {
     let mut table = MarkdownTable::new(&header);
     for set in sets {
         table.row(std::iter::once(set.clone()).chain(names.iter().map(|name| cell(value(found, set, name.clone())))));
+    }
+    table.render()
+}
+
+/// A row for the network, and for every set with which it is fitted again.
+fn again(found: &Summaries, sets: &Printed) -> String {
+    let unit = sets.unit.as_str();
+    let columns: Vec<&str> = sets.cameras.iter().filter(|camera| camera.tool.is_some()).map(|camera| camera.name.as_str()).collect();
+    let of_columns = columns.iter().flat_map(|name| OF_COLUMN.map(|(what, _)| format!("{name}: {what}")));
+    let header: Vec<String> =
+        ["reading", "misfit", "starts that end here", "near"].map(str::to_owned).into_iter().chain(of_columns).collect();
+    let mut table = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    let network = sets.network.iter().map(|network| ("as above", network.set.as_str()));
+    for (name, set) in network.chain(sets.again.iter().map(|set| (set.as_str(), set.as_str()))) {
+        let misfit = cell(value(found, set, Quantity::MisfitFitted.of(&[unit])));
+        let counts = [Quantity::StartsAlike, Quantity::PredictedNear];
+        let counts = counts.map(|figure| value(found, set, figure.into()).map_or_else(String::new, |count| format!("{count:.0}")));
+        let is_first = sets.network.as_ref().is_some_and(|network| network.set == set);
+        let of_column = |column: &str, [alone, among]: [Quantity; 2]| match is_first {
+            true => value(found, column, alone.of(&[unit])),
+            false => value(found, set, among.of(&[column, unit])),
+        };
+        let columns = columns.iter().flat_map(|column| OF_COLUMN.map(|(_, figures)| cell(of_column(column, figures))));
+        table.row([name.to_owned(), misfit].into_iter().chain(counts).chain(columns));
     }
     table.render()
 }
