@@ -54,4 +54,5 @@ mod several;
 mod standard;
 mod store;
 mod sweeps;
+mod vosselman;
 mod zhu;

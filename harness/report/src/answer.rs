@@ -63,7 +63,8 @@ impl Answers {
     pub fn sweep(&mut self, loaded: &LoadedSweep) {
         let mut wins: Vec<(String, Vec<f64>)> = Vec::new();
         let cells = loaded.sweep.cells.len();
-        if loaded.methods.iter().any(|method| is_limited(&method.name)) {
+        let compared = || loaded.methods.iter().map(|method| &*method.name).filter(|name| loaded.scenario.compares(name));
+        if compared().any(is_limited) || !compete(compared()) {
             return;
         }
         for cell in 0..cells {
@@ -220,6 +221,12 @@ fn plain_error(value: f64, error: f64) -> String {
     format!("{error:.decimals$}")
 }
 
+/// Whether these are of two operators at least: settings of one alone say nothing of who is better.
+fn compete<'a>(mut labels: impl Iterator<Item = &'a str>) -> bool {
+    let operator = |label: &'a str| label.split(':').next();
+    labels.next().is_some_and(|first| labels.any(|other| operator(other) != operator(first)))
+}
+
 #[cfg(test)]
 mod tests {
     use calibench_records::score::Errors;
@@ -246,6 +253,12 @@ mod tests {
         // sqrt((9 + 25 + 16 + 16) / 4) = 4.06 hundredths; 0.1 / 0.0406 = 2.46.
         assert!(row[0].starts_with("0.0406 \u{b1} 0.000"), "{row:?}");
         assert_eq!(row[1..], ["", "0.0", "`opencv_subpix:window=11`: 2.46", "2.46"].map(String::from));
+    }
+
+    #[test]
+    fn settings_of_one_operator_do_not_compete() {
+        assert!(!compete(["a:window=3", "a", "a:window=5"].into_iter()) && !compete(["a"].into_iter()) && !compete(std::iter::empty()));
+        assert!(compete(["a:window=3", "a", "ab"].into_iter()));
     }
 
     #[test]

@@ -194,6 +194,7 @@ catalogue! {
     MisfitFitted: Network "misfit of what is fitted, {}" in Object, 3, Less, PRINT, "root mean square misfit over the fitted columns";
     MisfitOverPrinted: Network "misfit over that of the printed cameras" in Number, 3, Less, PRINT, "misfit with a changed camera over that with the printed ones";
     Starts: Network "starts" in Number, 0, Neither, PRINT, "starts from which the network was fitted";
+    PredictedNear: Network "errors predicted nearly" in Number, 0, More, PRINT, "errors of columns that are not fitted whose predictions are as near as the scenario says";
     StartsAlike: Network "starts that end here" in Number, 0, More, PRINT, "starts that end in the best network";
     SiteDistance: Eop "distance, {}" in Object, 3, Neither, PRINT, "a number of the fitted network of stations: distance";
     SiteCurve: Eop "curve, {}" in Object, 3, Neither, PRINT, "a number of the fitted network of stations: curve";

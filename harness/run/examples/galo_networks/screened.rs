@@ -2,13 +2,13 @@
 
 use std::sync::LazyLock;
 
+use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Test, Variance, adjust};
 use calibench_measure::Registry;
-use calibench_model::camera::{Camera, CameraModel};
-use calibench_model::{PixelPoint, Pose, Testfield};
+use calibench_model::Testfield;
+use calibench_model::camera::CameraModel;
 use calibench_records::figures::Quantity;
 use calibench_records::results::{Figure, Trial, find};
 use calibench_run::Plan;
-use calibench_run::studies::network::{ImagePoint, Job, Observed, Wanted, adjusted};
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 
 use crate::drawn::{Check, Drawn, Noise};
@@ -30,8 +30,8 @@ pub struct Screened {
     pub points: usize,
     /// Standard deviations for a standard deviation of unit weight of one.
     pub cofactors: [f64; 4],
-    /// Control as coordinates, of which each is an observation.
-    pub control: usize,
+    /// Redundancy of all image coordinates, and of all coordinates of control: sums of their redundancy numbers.
+    pub redundancy: [f64; 2],
     /// The second step.
     pub check: Check,
 }
@@ -64,31 +64,40 @@ pub fn screened(drawn: &Drawn) -> Option<Screened> {
         return None;
     }
     let check = check(&views.field, &seen)?;
-    let control = 3 * (0..views.field.targets.len()).filter(|target| seen.iter().any(|image| image.contains(target))).count();
-    Some(Screened { points, cofactors: cofactors(views, &seen)?, control, check })
+    let (cofactors, redundancy) = geometry(views, &seen)?;
+    Some(Screened { points, cofactors, redundancy, check })
 }
 
-/// Standard deviations of the camera at the truth, for a standard deviation of unit weight of one.
-fn cofactors(views: &ViewsSubject, seen: &[Vec<usize>]) -> Option<[f64; 4]> {
-    let mut calibration = views.study.network().cloned()?;
-    let Camera::Photogrammetric(truth) = views.camera else { return None };
-    calibration.start = truth;
-    let job = Job { calibration: &calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
+/// Standard deviations of the camera at the truth, for a standard deviation of unit weight of one, and the sums of redundancy numbers of image coordinates and
+/// of control.
+fn geometry(views: &ViewsSubject, seen: &[Vec<usize>]) -> Option<([f64; 4], [f64; 2])> {
+    let calibration = views.study.network()?;
     let place = |target: usize| views.field.position(&views.field.targets[target]);
-    let mut points = Vec::new();
-    for (view, (station, targets)) in views.stations.iter().zip(seen).enumerate() {
+    let mut used: Vec<usize> = seen.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let points =
+        used.iter().map(|&target| ObjectPoint::observed(&views.field.targets[target].id, place(target), [calibration.control_sigma; 3]));
+    let mut network = Network {
+        cameras: vec![Interior::fixed("camera", views.camera).free(&NAMES).ok()?],
+        points: points.collect(),
+        ..Network::default()
+    };
+    for (image, (station, targets)) in views.stations.iter().zip(seen).enumerate() {
+        network.images.push(Exterior::free(station.name.clone(), 0, station.pose));
         for &target in targets {
-            // The alternating error makes no camera, but a standard deviation of unit weight that is not zero.
-            let (at, sign) =
-                (views.camera.project(station.pose.ray(&place(target))).ok()?, if points.len() % 2 == 0 { 1e-4 } else { -1e-4 });
-            points.push(ImagePoint { method: 0, view, target, at: PixelPoint::new(at.x + sign, at.y - sign) });
+            let at = views.camera.project(station.pose.ray(&place(target))).ok()?;
+            network.observations.push(ImageObservation::new(image, used.binary_search(&target).ok()?, at, calibration.sigma_px));
         }
     }
-    let observed = Observed { points, control: (0..views.field.targets.len()).map(place).collect() };
-    let poses: Vec<Pose> = views.stations.iter().map(|station| station.pose).collect();
-    let figures = adjusted(&job, &observed, 0, &NAMES, &poses, Wanted::Interior).ok()?.figures;
-    let sigma0 = find(&figures, Quantity::Sigma0)?.value / calibration.sigma_px;
-    Some(sigmas(&figures)?.map(|sigma| sigma / sigma0))
+    let solution = adjust(&network, &Options::default()).ok()?;
+    let (names, covariance) = solution.covariances(Variance::Apriori).ok()?.of_camera(0);
+    let sigma = |name: &str| names.iter().position(|other| *other == name).map(|row| covariance[(row, row)].sqrt());
+    let [c, x0, y0, k1] = NAMES.map(sigma);
+    let reliability = solution.reliability(Test::default()).ok()?;
+    let image = reliability.points.iter().map(|point| point.redundancy[0] + point.redundancy[1]).sum();
+    let control = reliability.observed.iter().map(|observed| observed.redundancy).sum();
+    Some(([c?, x0?, y0?, k1?], [image, control]))
 }
 
 /// Reported standard deviations of the camera.

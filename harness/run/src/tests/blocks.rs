@@ -102,6 +102,18 @@ fn observed_heights_and_lots_are_counted() {
     assert_eq!(value(&found, 1, "image points"), 10.0 * IMAGES);
 }
 
+/// What a block leaves out are points of its own targets.
+#[test]
+fn gross_errors_are_counted_by_block() {
+    let listed =
+        format!("{}[[block]]\nname = \"all\"\n[[block]]\nname = \"some\"\ntargets = [\"*1\", \"*2\", \"*3\"]\n", HEAD.replace("20", "15"));
+    let found = trials(&stand("", "c = 10.0\n", &listed, "8.0"), 1).swap_remove(0).calibrations;
+    let of = |set: usize| ["gross errors", "image points", "points"].map(|name| value(&found, set, name));
+    let ([gross, seen, points], [some, few, fewer]) = (of(0), of(1));
+    assert!(gross > some && some > 0.0 && fewer < points, "{gross} {some} {points} {fewer}");
+    assert_eq!((seen + gross, few + some), (IMAGES * points, IMAGES * fewer));
+}
+
 /// Images of one turn and roll see the wall alike, whatever the tilt: the camera's local distortion is the same in both.
 #[test]
 fn one_local_distortion_is_common_to_images_of_one_view() {

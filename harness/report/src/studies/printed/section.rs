@@ -4,7 +4,7 @@ use calibench_records::description::Printed;
 use calibench_records::figures::Group;
 
 use super::pictures::Drawn;
-use super::tables::{by_figure, by_set, failures, numbers, stations};
+use super::tables::{again, by_figure, by_set, failures, numbers, stations};
 use crate::canvas::Pictures;
 use crate::load::Loaded;
 
@@ -13,8 +13,9 @@ const NETWORK: &str = "The network of stations that explains the fitted columns,
 /// What stands above changed cameras.
 const VARIANTS: &str = "Each camera with something changed: in the image against the camera as printed, after the best rotation and where neither folds over; and what it predicts in the same network. \
                         *Misfit*: root mean square of predicted less printed absolute errors.";
-/// What stands above changed cameras that others are fitted to.
-const AGAIN: &str = "The network fitted again, with a camera changed.";
+/// What stands above readings and cameras with which the network is fitted again.
+const AGAIN: &str = "The network fitted again: with another reading of the print, or with a camera changed. *Misfit* is that of the fitted columns, and of each column's errors; *near*: \
+                     how many errors of columns that are not fitted are predicted within what the scenario says.";
 
 /// The section of `loaded`, whose sets are `sets`, and its pictures, whose names begin with `stem`.
 pub fn section(loaded: &Loaded, sets: &Printed, stem: &str) -> (String, Pictures) {
@@ -34,7 +35,7 @@ pub fn section(loaded: &Loaded, sets: &Printed, stem: &str) -> (String, Pictures
         text.push_str(&format!("### Changed cameras\n\n{VARIANTS}\n\n{}\n", by_set(found, &sets.variants)));
     }
     if !sets.again.is_empty() {
-        text.push_str(&format!("### Fitted again\n\n{AGAIN}\n\n{}\n", by_figure(found, &sets.again, &[Group::Network])));
+        text.push_str(&format!("### Fitted again\n\n{AGAIN} Unit: {}.\n\n{}\n", sets.unit, again(found, sets)));
     }
     (text + &failures(found), drawn.pictures)
 }

@@ -1,5 +1,6 @@
 //! Tables of printed figures.
 
+use calibench_records::description::Printed;
 use calibench_records::figures::{FigureName, Group, Quantity};
 
 use crate::load::adjustments::Summaries;
@@ -9,6 +10,13 @@ use crate::markdown::{MarkdownTable, plain};
 pub const STATION: [Quantity; 3] = [Quantity::StationX, Quantity::StationY, Quantity::StationZ];
 /// Its angles.
 pub const ANGLES: [Quantity; 3] = [Quantity::Omega, Quantity::Phi, Quantity::Kappa];
+
+/// What a column's errors have where the network is that of the scenario, and where it is fitted again.
+const OF_COLUMN: [(&str, [Quantity; 2]); 3] = [
+    ("misfit", [Quantity::Misfit, Quantity::MisfitOf]),
+    ("planimetric", [Quantity::PredictedPlanimetric, Quantity::PredictedPlanimetricOf]),
+    ("Z", [Quantity::PredictedZ, Quantity::PredictedZOf]),
+];
 
 /// The value of a figure; nothing where a set has none.
 pub fn value(found: &Summaries, set: &str, figure: FigureName) -> Option<f64> {
@@ -48,6 +56,30 @@ pub fn by_set(found: &Summaries, sets: &[String]) -> String {
     let mut table = MarkdownTable::new(&header);
     for set in sets {
         table.row(std::iter::once(set.clone()).chain(names.iter().map(|name| cell(value(found, set, name.clone())))));
+    }
+    table.render()
+}
+
+/// A row for the network, and for every set with which it is fitted again.
+pub fn again(found: &Summaries, sets: &Printed) -> String {
+    let unit = sets.unit.as_str();
+    let columns: Vec<&str> = sets.cameras.iter().filter(|camera| camera.tool.is_some()).map(|camera| camera.name.as_str()).collect();
+    let of_columns = columns.iter().flat_map(|name| OF_COLUMN.map(|(what, _)| format!("{name}: {what}")));
+    let header: Vec<String> =
+        ["reading", "misfit", "starts that end here", "near"].map(str::to_owned).into_iter().chain(of_columns).collect();
+    let mut table = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    let network = sets.network.iter().map(|network| ("as above", network.set.as_str()));
+    for (name, set) in network.chain(sets.again.iter().map(|set| (set.as_str(), set.as_str()))) {
+        let misfit = cell(value(found, set, Quantity::MisfitFitted.of(&[unit])));
+        let counts = [Quantity::StartsAlike, Quantity::PredictedNear];
+        let counts = counts.map(|figure| value(found, set, figure.into()).map_or_else(String::new, |count| format!("{count:.0}")));
+        let is_first = sets.network.as_ref().is_some_and(|network| network.set == set);
+        let of_column = |column: &str, [alone, among]: [Quantity; 2]| match is_first {
+            true => value(found, column, alone.of(&[unit])),
+            false => value(found, set, among.of(&[column, unit])),
+        };
+        let columns = columns.iter().flat_map(|column| OF_COLUMN.map(|(_, figures)| cell(of_column(column, figures))));
+        table.row([name.to_owned(), misfit].into_iter().chain(counts).chain(columns));
     }
     table.render()
 }

@@ -10,7 +10,7 @@ use calibench_records::figures::{FigureName, Group};
 use super::grids::{self, Grid};
 use super::maps::{conversions, distortions};
 use super::pictures::{self, Drawn};
-use super::tables::{by_figure, by_set, failures, numbers, stations};
+use super::tables::{again, by_figure, by_set, failures, numbers, stations};
 use crate::field::Field;
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::plain;
@@ -54,6 +54,53 @@ fn figures_stand_by_set_and_what_a_set_lacks_is_empty() {
     let found = cells(&by_figure(&summaries(), &sets, &[Group::Network, Group::Check]));
     assert_eq!(found, [["figure", "a", "b"], ["c, um", "1.00", "3.00"], ["RMSE X, m, of printed errors", "2.00", ""]]);
     assert_eq!(cells(&by_set(&summaries(), &sets)), [["camera", "c, um"], ["a", "1.00"], ["b", "3.00"]]);
+}
+
+/// The network's own row has its columns' figures; a set with which it is fitted again has them by name.
+#[test]
+fn readings_stand_below_each_other() {
+    let camera = |name: &str, tool: Option<&str>| PrintedCamera {
+        name: name.into(),
+        tool: tool.map(str::to_owned),
+        c: 19.0,
+        principal_point: [0.0; 2],
+        k: [0.0; 3],
+        p: [0.0; 2],
+    };
+    let sets = Printed {
+        sensor: "sensor".into(),
+        size: [4272, 2848],
+        pitch_um: 5.38,
+        unit: "m".into(),
+        cameras: vec![camera("plain", None), camera("a", Some("opencv"))],
+        grids: Vec::new(),
+        points: Vec::new(),
+        network: Some(PlacedNetwork { set: "net".into(), from: [1.0, 0.0, 0.0] }),
+        variants: Vec::new(),
+        again: vec!["turned".into()],
+    };
+    let mut found = summaries();
+    let mut add = |set: &str, name: &str, value: f64| {
+        let first = Some(Numbers { value, sigma: None, error: None });
+        let figure = FigureName::parse(Group::Network, name).unwrap();
+        found.figures.insert(("print".into(), set.into(), figure), Summary { first, ..Summary::default() });
+    };
+    for (set, name, value) in [
+        ("net", "misfit of what is fitted, m", 0.004),
+        ("net", "starts that end here", 7.0),
+        ("net", "errors predicted nearly", 72.0),
+        ("a", "misfit, m", 0.02),
+        ("a", "predicted RMSE Z, m", 0.42),
+        ("turned", "misfit of what is fitted, m", 0.005),
+        ("turned", "a: misfit, m", 0.03),
+        ("turned", "a: predicted planimetric RMSE, m", 0.25),
+    ] {
+        add(set, name, value);
+    }
+    let header = ["reading", "misfit", "starts that end here", "near", "a: misfit", "a: planimetric", "a: Z"];
+    let first = ["as above", "0.00400", "7", "72", "0.0200", "", "0.420"];
+    let second = ["turned", "0.00500", "", "", "0.0300", "0.250", ""];
+    assert_eq!(cells(&again(&found, &sets)), [header, first, second]);
 }
 
 #[test]

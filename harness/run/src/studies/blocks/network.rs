@@ -64,7 +64,7 @@ pub fn name(job: &Job<'_>, chosen: &[usize]) -> String {
 
 fn solve(job: &Job<'_>, block: &Block, sights: &Sights, corrected: Option<Corrected<'_>>, chosen: &[usize]) -> Result<Solved, String> {
     let images: Vec<usize> = chosen.iter().copied().filter(|&image| sights.images[image].pose.is_some()).collect();
-    let gross = images.iter().map(|&image| sights.images[image].gross).sum();
+    let gross = images.iter().flat_map(|&image| &sights.images[image].gross).filter(|target| block.targets.contains(target)).count();
     let (groups, used) = groups(block, corrected, &images);
     let mut network = Network { cameras: interiors(job, block, corrected, &used)?, ..Network::default() };
     let place = |group: usize| used.iter().position(|&other| other == group);

@@ -29,8 +29,8 @@ pub struct Sighted {
     pub pose: Option<Pose>,
     /// Target and image coordinates (px), without gross errors.
     pub points: Vec<(usize, PixelPoint)>,
-    /// Points that were left out as gross errors.
-    pub gross: usize,
+    /// Targets whose points were left out as gross errors.
+    pub gross: Vec<usize>,
 }
 
 impl Sights {
@@ -77,12 +77,10 @@ impl Sighted {
         let surveyed = |target: usize| job.field.targets[target].surveyed;
         let control: Vec<Control> = self.points.iter().map(|&(target, image)| Control { object: surveyed(target), image }).collect();
         let Ok(pose) = robust_pose_of(&camera, &control) else { return };
-        let all = self.points.len();
         let near = |&(target, at): &(usize, PixelPoint)| {
             camera.project(pose.ray(&surveyed(target))).is_ok_and(|seen| seen.distance(at) <= job.blocks.gross_px)
         };
-        self.points.retain(near);
-        self.gross = all - self.points.len();
+        self.gross = self.points.extract_if(.., |point| !near(point)).map(|(target, _)| target).collect();
         self.pose = Some(pose).filter(|_| self.points.len() >= LEAST_POINTS);
     }
 }

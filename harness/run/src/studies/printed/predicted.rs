@@ -64,7 +64,7 @@ impl<'a> Predictions<'a> {
         let Photogrammetric { size, pitch_um, .. } = cameras[plan.truth];
         let frame = Frame::new(size.width, size.height, pitch_um).map_err(|why| why.to_string())?;
         let site = Site::new(plan, &printed.points, frame);
-        let fitted = fit(printed, plan, &site, &cameras)?;
+        let fitted = fit(printed, plan, &site, (&cameras, &plan.turned_truth.of(&cameras[plan.truth])))?;
         Ok(Self { printed, plan, site, fitted })
     }
 
@@ -81,13 +81,25 @@ impl<'a> Predictions<'a> {
         });
         let [starts, same] = self.fitted.starts.map(|count| count as f64);
         let seen = self.fitted.pictures.iter().flat_map(|(_, seen)| seen).flatten().count() as f64;
+        let cameras: Vec<Photogrammetric> = self.printed.cameras.iter().map(|column| column.camera).collect();
+        let near = self.near(&self.fitted, &cameras).ok();
         let whole = [
             Figure::plain(Quantity::MisfitFitted.of(&[unit]), self.fitted.misfit, unit),
             Figure::plain(Quantity::Starts, starts, ""),
             Figure::plain(Quantity::StartsAlike, same, ""),
             Figure::plain(Quantity::ImagePoints, seen, ""),
         ];
-        whole.into_iter().chain(numbers).chain(stations).collect()
+        whole.into_iter().chain(near).chain(numbers).chain(stations).collect()
+    }
+
+    /// How many errors of columns that are not fitted are predicted as near as the plan says.
+    fn near(&self, fitted: &Fitted, cameras: &[Photogrammetric]) -> Result<Figure, String> {
+        let mut near = 0;
+        for (column, camera) in cameras.iter().enumerate().filter(|(column, _)| !self.plan.fitted.contains(column)) {
+            let misfits = misfits(self.printed, column, &self.site.errors(&fitted.pictures, camera)?);
+            near += misfits.into_iter().filter(|misfit| misfit.abs() <= self.plan.within).count();
+        }
+        Ok(Figure::plain(Quantity::PredictedNear, near as f64, ""))
     }
 
     /// What is predicted of a column.
@@ -117,11 +129,17 @@ impl<'a> Predictions<'a> {
         }
         let mut cameras: Vec<Photogrammetric> = self.printed.cameras.iter().map(|column| column.camera).collect();
         cameras[variant.of] = variant.camera;
-        let again = fit(self.printed, self.plan, &self.site, &cameras)?;
+        let truth = variant.turned_truth.unwrap_or(self.plan.turned_truth).of(&cameras[self.plan.truth]);
+        cameras.iter_mut().for_each(|camera| *camera = variant.turned_columns.of(camera));
+        let again = fit(self.printed, self.plan, &self.site, (&cameras, &truth))?;
         let unit = self.printed.unit.name();
+        let [starts, same] = again.starts.map(|count| count as f64);
         let mut all = vec![
             Figure::plain(Quantity::MisfitFitted.of(&[unit]), again.misfit, unit),
             Figure::plain(Quantity::MisfitOverPrinted, again.misfit / self.fitted.misfit, ""),
+            Figure::plain(Quantity::Starts, starts, ""),
+            Figure::plain(Quantity::StartsAlike, same, ""),
+            self.near(&again, &cameras)?,
         ];
         for (index, (column, camera)) in self.printed.cameras.iter().zip(&cameras).enumerate() {
             let errors = self.site.errors(&again.pictures, camera)?;
@@ -150,10 +168,16 @@ fn misfits(printed: &Printed, column: usize, errors: &[Vector3<f64>]) -> Vec<f64
     pairs.flat_map(|(given, error)| [0, 1, 2].map(|axis| error[axis].abs() - given[axis])).collect()
 }
 
-/// The network whose errors of the fitted columns are nearest to the printed ones, over all starts.
-fn fit(printed: &Printed, plan: &NetworkPlan, site: &Site, cameras: &[Photogrammetric]) -> Result<Fitted, String> {
+/// The network whose errors of the fitted columns, corrected by `cameras`, are nearest to the printed ones, over all starts: of the true camera `truth` is the
+/// direct conversion.
+fn fit(
+    printed: &Printed,
+    plan: &NetworkPlan,
+    site: &Site,
+    (cameras, truth): (&[Photogrammetric], &Photogrammetric),
+) -> Result<Fitted, String> {
     let tool = printed.cameras[plan.truth].target().ok_or("the true camera has no tool")?;
-    let truth = from_naive(&cameras[plan.truth], tool, Tangential::Converted).map_err(|why| why.to_string())?;
+    let truth = from_naive(truth, tool, Tangential::Converted).map_err(|why| why.to_string())?;
     let residuals = |numbers: &[f64; NUMBERS]| residuals(printed, plan, site, (cameras, &truth), numbers);
     let starts: Vec<[f64; NUMBERS]> = starts(plan);
     let found: Vec<_> = starts.par_iter().map(|start| least_squares(*start, (DIFFERENCE * start[0], ROUGH), residuals)).collect();
@@ -181,13 +205,13 @@ fn residuals(
     Some(all)
 }
 
-/// Every distance with every base, straight and bent to the points, looking at their middle.
+/// Every distance with every base, straight and bent to the points, at every height, looking at the points' middle.
 fn starts(plan: &NetworkPlan) -> Vec<[f64; NUMBERS]> {
     let mut all = Vec::new();
     for &distance in &plan.distances {
         for &base in &plan.bases {
             for curve in [0.0, -0.5 * base * base / distance] {
-                all.push([distance, curve, base, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+                all.extend(plan.heights.iter().map(|&height| [distance, curve, base, 0.0, height, 0.0, 0.0, 0.0, 0.0]));
             }
         }
     }

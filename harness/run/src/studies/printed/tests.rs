@@ -6,6 +6,7 @@ use calibench_model::convert::{Tangential, Target, from_naive};
 use calibench_model::{Frame, Pose};
 use calibench_records::figures::Group;
 use calibench_records::results::Figure;
+use calibench_scenario::Turned;
 use calibench_scenario::{Printed, StudyPlan, Subject, parse};
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -204,6 +205,34 @@ fn a_network_is_found_again_from_its_own_errors() {
         let middle = printed.points.iter().map(|point| point.at.coords).sum::<Vector3<f64>>() / printed.points.len() as f64;
         assert!(found.camera_from_world(&middle.into()).z < -5.0);
     }
+}
+
+/// Errors of a true camera whose p2 has the other sign than its column: of the readings that one leaves no misfit, and predicts every error.
+#[test]
+fn the_reading_that_made_the_errors_explains_them() {
+    let mut printed = printed();
+    let turned = Turned { p: [false, true], ..Turned::default() };
+    let own = from_naive(&turned.of(&printed.cameras[1].camera), Target::metashape(), Tangential::Converted).unwrap();
+    let (site, pictures) = network(&own);
+    for column in 0..printed.cameras.len() {
+        let errors = site.errors(&pictures, &printed.cameras[column].camera).unwrap();
+        for (point, error) in printed.points.iter_mut().zip(errors) {
+            point.errors[column] = error.abs().into();
+        }
+    }
+    let all: Vec<Vec<Figure>> = run(&printed).calibrations.into_iter().map(|one| one.outcome.unwrap()).collect();
+    let of = |set: &str, name: &str| value(&all, &printed, set, Group::Network, name);
+    near(of("true p2 turned", "misfit of what is fitted, m"), 0.0, 2e-5);
+    near(of("true p2 turned", "errors predicted nearly"), 36.0, 0.0);
+    near(of("true p2 turned", "OpenCV: misfit, m"), 0.0, 2e-4);
+    for other in ["network", "applied p2 turned"] {
+        assert!(of(other, "misfit of what is fitted, m") > 2e-4, "{other}");
+    }
+    near(of("true p2 turned", "starts"), 4.0, 0.0);
+    // As the network's own reading it stands there.
+    printed.network.as_mut().unwrap().turned_truth = turned;
+    let again: Vec<Vec<Figure>> = run(&printed).calibrations.into_iter().map(|one| one.outcome.unwrap()).collect();
+    near(value(&again, &printed, "network", Group::Network, "misfit of what is fitted, m"), 0.0, 2e-5);
 }
 
 /// Rosenbrock's valley, as residuals 10 (y - x^2) and 1 - x: the least is at (1, 1).

@@ -85,6 +85,8 @@ pub struct CheckPoint {
 pub struct NetworkPlan {
     /// The place of the true camera.
     pub truth: usize,
+    /// What is turned in sign between its column and the tool's own camera.
+    pub turned_truth: Turned,
     /// How many stations: two at least.
     pub stations: usize,
     /// Unit vector from the points to the stations, object axes.
@@ -97,6 +99,10 @@ pub struct NetworkPlan {
     pub distances: Vec<f64>,
     /// Half lengths of the base to start from, object units.
     pub bases: Vec<f64>,
+    /// Heights to start from, object units.
+    pub heights: Vec<f64>,
+    /// How far a predicted error may be from the printed one to count as near, object units.
+    pub within: f64,
 }
 
 /// A printed camera with something changed.
@@ -110,6 +116,33 @@ pub struct Variant {
     pub camera: Photogrammetric,
     /// Whether the network is fitted again with it.
     pub refit: bool,
+    /// What is turned in sign between the true camera's column and the tool's own, if it is not what the network's plan says.
+    pub turned_truth: Option<Turned>,
+    /// What is turned in sign in every column as it is applied.
+    pub turned_columns: Turned,
+}
+
+/// Which parameters of a camera are turned in sign.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Turned {
+    /// x0.
+    pub x0: bool,
+    /// y0.
+    pub y0: bool,
+    /// p1 and p2.
+    pub p: [bool; 2],
+}
+
+impl Turned {
+    /// Their names in files.
+    pub const NAMES: [&'static str; 4] = ["x0", "y0", "p1", "p2"];
+
+    /// What is turned in `camera`.
+    pub fn of(self, camera: &Photogrammetric) -> Photogrammetric {
+        let sign = |value: f64, turned: bool| if turned { -value } else { value };
+        let p = [0, 1].map(|i| sign(camera.p[i], self.p[i]));
+        Photogrammetric { x0: sign(camera.x0, self.x0), y0: sign(camera.y0, self.y0), p, ..*camera }
+    }
 }
 
 impl StudyPlan for Printed {

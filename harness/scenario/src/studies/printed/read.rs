@@ -9,7 +9,7 @@ use nalgebra::{Point3, Vector3};
 use toml::Spanned;
 
 use super::wire::{AbsoluteError, CameraWire, GridWire, NetworkWire, PixelWire, PointWire, PrintedWire, VariantWire};
-use super::{CheckPoint, Column, Grid, NETWORK, NetworkPlan, Printed, SENSOR, Variant};
+use super::{CheckPoint, Column, Grid, NETWORK, NetworkPlan, Printed, SENSOR, Turned, Variant};
 use crate::Unit;
 use crate::section::Section;
 use crate::testfield::wire::{Height, Length};
@@ -185,7 +185,30 @@ fn variant(section: Section<'_>, cameras: &[Column], names: &mut Names, problems
         p: wire.p.map_or(base.p, |p| p.map(|p| p.0)),
         ..base
     };
-    Some(Variant { name, of, camera, refit: wire.refit.unwrap_or(false) })
+    let turned_truth = wire.turned_truth.map(|names| turned(&names, problems));
+    let turned_columns = turned(&wire.turned_columns.unwrap_or_default(), problems);
+    let refit = wire.refit.unwrap_or(false);
+    if !refit && (turned_truth.is_some() || turned_columns != Turned::default()) {
+        problems.push(Problem::new(wire.name.span(), format!("`{name}` turns signs of the network's cameras: expected `refit = true`")));
+    }
+    Some(Variant { name, of, camera, refit, turned_truth, turned_columns })
+}
+
+fn turned(names: &[Spanned<String>], problems: &mut Vec<Problem>) -> Turned {
+    let mut turned = Turned::default();
+    for name in names {
+        match name.get_ref().as_str() {
+            "x0" => turned.x0 = true,
+            "y0" => turned.y0 = true,
+            "p1" => turned.p[0] = true,
+            "p2" => turned.p[1] = true,
+            other => problems.push(
+                Problem::new(name.span(), format!("`{other}` has no sign to turn: expected x0, y0, p1 or p2"))
+                    .nearest(other, Turned::NAMES),
+            ),
+        }
+    }
+    turned
 }
 
 fn network_plan(section: Section<'_>, cameras: &[Column], points: usize, problems: &mut Vec<Problem>) -> Option<NetworkPlan> {
@@ -199,7 +222,8 @@ fn network_plan(section: Section<'_>, cameras: &[Column], points: usize, problem
     if points < 3 {
         problems.push(Problem::new(span, format!("a network takes 3 check points at least, found {points}")));
     }
-    one_to_one(truth.map(|truth| &cameras[truth]), wire.truth.span(), problems);
+    let turned_truth = turned(&wire.turned_truth.unwrap_or_default(), problems);
+    one_to_one(truth.map(|truth| (&cameras[truth], turned_truth)), wire.truth.span(), problems);
     let from = unit(&wire.from, "from", problems);
     let up = unit(&wire.up, "up", problems);
     let (from, up) = (from?, up?);
@@ -209,19 +233,38 @@ fn network_plan(section: Section<'_>, cameras: &[Column], points: usize, problem
     };
     let distances = lengths(&wire.distances, "distances", problems);
     let bases = lengths(&wire.bases, "bases", problems);
-    let stations = wire.stations.get_ref().0;
-    (problems.len() == before).then_some(NetworkPlan { truth: truth?, stations, from, up, fitted, distances, bases })
+    let heights = match &wire.heights {
+        None => vec![0.0],
+        Some(heights) if heights.get_ref().is_empty() => {
+            problems.push(Problem::new(heights.span(), "`heights` is empty: expected where a fit starts"));
+            Vec::new()
+        }
+        Some(heights) => heights.get_ref().iter().map(|height| height.0).collect(),
+    };
+    let (stations, within) = (wire.stations.get_ref().0, wire.within.0);
+    (problems.len() == before).then_some(NetworkPlan {
+        truth: truth?,
+        turned_truth,
+        stations,
+        from,
+        up,
+        fitted,
+        distances,
+        bases,
+        heights,
+        within,
+    })
 }
 
 /// The true camera pictures the whole frame.
-fn one_to_one(truth: Option<&Column>, span: Range<usize>, problems: &mut Vec<Problem>) {
-    let Some(column @ Column { name, camera, .. }) = truth else { return };
+fn one_to_one(truth: Option<(&Column, Turned)>, span: Range<usize>, problems: &mut Vec<Problem>) {
+    let Some((column @ Column { name, camera, .. }, turned)) = truth else { return };
     let Some(target) = column.target() else {
         let problem = Problem::new(span, format!("`{name}` has no tool: a true camera is a tool's own"));
         problems.push(problem.help(format!("add `tool`, one of {}", tools().join(", "))));
         return;
     };
-    match from_naive(camera, target, Tangential::Converted) {
+    match from_naive(&turned.of(camera), target, Tangential::Converted) {
         Err(error) => problems.push(Problem::new(span, format!("`{name}`: {error}"))),
         Ok(own) => {
             if let Some(fold) = fold(&own) {

@@ -52,6 +52,7 @@ up = [1, 0, 1]
 fitted = ["none"]
 distances = [10]
 bases = [3]
+within = 0.1
 [[printed.variant]]
 name = "other"
 camera = "own"
@@ -83,9 +84,10 @@ fn what_is_written_is_read() {
     let grid = &printed.grids[0];
     assert_eq!((grid.name.as_str(), grid.camera.k, grid.camera.x0), ("bent", [4e-4, 0.0, 0.0], 0.1), "the rest is that of the camera");
     let network = printed.network.unwrap();
-    assert_eq!((network.truth, network.stations, network.fitted), (1, 4, vec![0]));
+    assert_eq!((network.truth, network.stations, network.fitted, network.heights), (1, 4, vec![0], vec![0.0]));
     assert!((network.from.x - 1.0).abs() < 1e-15 && (network.up.z - 1.0).abs() < 1e-15 && network.up.x.abs() < 1e-15, "unit and across");
     // kc / c^4 in place of kc / c^6 is c^2 = 400 times as large.
+    assert_eq!((printed.variants[0].turned_truth, network.turned_truth), (None, super::Turned::default()));
     let k = printed.variants[0].camera.k;
     assert!((k[0] - 1e-4).abs() < 1e-18 && (k[1] - 1e-6).abs() < 1e-20 && (k[2] - 4e-6).abs() < 1e-18, "{k:?}");
 }
@@ -109,12 +111,15 @@ fn a_mistake_is_told_by_line_and_name() {
         ("up = [1, 0, 1]", "up = [-3, 0, 0]", "44:6", "`up` lies along `from`"),
         ("from = [2, 0, 0]", "from = [0, 0, 0]", "43:8", "`from` is no direction"),
         ("bases = [3]", "bases = []", "47:9", "`bases` is empty"),
+        ("bases = [3]", "bases = [3]\nheights = []", "48:11", "`heights` is empty"),
+        ("stations = 4", "turned_truth = [\"p3\"]\nstations = 4", "42:17", "`p3` has no sign to turn"),
+        ("powers = [2, 4, 4]", "turned_columns = [\"y0\"]", "50:8", "expected `refit = true`"),
         ("tool = \"photoscan\"", "tool = \"photscan\"", "20:8", "did you mean `photoscan`?"),
         ("camera = \"own\"\nk = [4e-4, 0, 0]", "camera = \"won\"\nk = [4e-4, 0, 0]", "26:10", "no camera is called `won`"),
         ("k = [4e-4, 0, 0]", "k = [4e-3, 0, 0]", "25:8", "`bent` folds over inside the frame"),
         ("k = [4e-4, 0, 0]", "k = [0, 0, 0]", "25:8", "`bent` has no distortion to show"),
         ("unit = \"m\"", "unit = \"inch\"", "9:8", "no unit is called `inch`"),
-        ("name = \"other\"", "name = \"network\"", "49:8", "stands twice"),
+        ("name = \"other\"", "name = \"network\"", "50:8", "stands twice"),
         ("name = \"C\"", "name = \"A\"", "37:8", "`A` stands twice"),
         ("[0.01, 0.02, 0.03]", "[-0.01, 0.02, 0.03]", "31:42", "expected a number from 0"),
         ("seed = 1", "seed = 1\ntrials = 2", "4:10", "2 trials of a scenario in which nothing is random"),

@@ -116,6 +116,12 @@ pub struct VariantWire {
     pub powers: Option<[Power; 3]>,
     /// Whether the network is fitted again with it. Default: it is applied in the network of the printed cameras.
     pub refit: Option<bool>,
+    /// What is turned in sign between print and the true camera, where the network is fitted again: another reading. Default: as `[printed.network]` says.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub turned_truth: Option<Vec<Spanned<String>>>,
+    /// What is turned in sign in every column as it is applied, where the network is fitted again. Default: nothing.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub turned_columns: Option<Vec<Spanned<String>>>,
 }
 
 /// A check point with the printed errors of every camera.
@@ -139,6 +145,9 @@ pub struct NetworkWire {
     /// The true camera: the tool's own, ideal to distorted.
     #[schemars(with = "String")]
     pub truth: Spanned<String>,
+    /// What is turned in sign between its column and the tool's own camera, of `x0`, `y0`, `p1` and `p2`. Default: nothing.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub turned_truth: Option<Vec<Spanned<String>>>,
     /// How many stations.
     #[schemars(with = "u32")]
     pub stations: Spanned<Stations>,
@@ -157,4 +166,9 @@ pub struct NetworkWire {
     /// Half lengths of the base that the fit starts from, object units.
     #[schemars(with = "Vec<f64>")]
     pub bases: Spanned<Vec<Length>>,
+    /// Heights of the stations above the points' mean that the fit starts from, object units; they look at that mean. Default: 0 alone.
+    #[schemars(with = "Option<Vec<f64>>")]
+    pub heights: Option<Spanned<Vec<Height>>>,
+    /// How far a predicted error may be from the printed one to count as near, object units.
+    pub within: Length,
 }
