@@ -230,6 +230,17 @@ impl Settings {
         self.values.iter().map(|(parameter, value)| (parameter.name, parameter.domain.setting(*value)))
     }
 
+    /// `pair`, as `shape=2`, with the name of the choice in place of its number; anything else as it is.
+    pub(crate) fn named(&self, pair: &str) -> String {
+        let name = || {
+            let (key, value) = pair.split_once('=')?;
+            let (parameter, _) = self.values.iter().find(|(parameter, _)| parameter.name == key)?;
+            let value = value.parse().ok().filter(|value| parameter.domain.holds(*value))?;
+            Some(format!("{key}={}", parameter.domain.setting(value)))
+        };
+        name().unwrap_or_else(|| pair.to_owned())
+    }
+
     /// As [`Self::written`], of what a label shows: what is not at its default, or shown always.
     pub(crate) fn shown(&self) -> impl Iterator<Item = (&'static str, Setting)> + '_ {
         let shown = self.values.iter().filter(|(parameter, value)| parameter.always_shown || *value != parameter.default);

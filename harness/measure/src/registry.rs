@@ -80,6 +80,13 @@ impl Configured {
         Self { label: format!("{}{separator}{KINDS}={kinds}", self.unlimited_label), kinds: Some(kinds), ..self }
     }
 
+    /// Whether `text` is its label, with names or numbers of choices.
+    pub fn is_called(&self, text: &str) -> bool {
+        let Some((name, settings)) = text.split_once(':') else { return text == self.label };
+        let named = settings.split(',').map(|pair| self.settings.named(pair)).collect::<Vec<_>>().join(",");
+        format!("{name}:{named}") == self.label
+    }
+
     /// The method's name, without parameters.
     pub fn name(&self) -> &str {
         self.label.split(':').next().unwrap_or(&self.label)
@@ -270,6 +277,13 @@ mod tests {
             assert_eq!((label(number).as_str(), label(name).as_str()), (name, name));
         }
         assert_eq!(label("lsm:shape=0,sharpness=1"), "lsm:window=15", "as at first");
+        let matching = Registry::builtin().parse("lsm:window=13,neighbours=0,kinds=disc").unwrap();
+        for text in ["lsm:window=13,neighbours=0,kinds=disc", "lsm:window=13,neighbours=counted,kinds=disc"] {
+            assert!(matching.is_called(text), "{text}");
+        }
+        for text in ["lsm", "lsm:window=13", "lsm:window=13,neighbours=1,kinds=disc", "forstner:window=13,neighbours=0,kinds=disc"] {
+            assert!(!matching.is_called(text), "{text}");
+        }
         let message = error("lsm:shape=chess").to_string();
         assert!(message.contains("one of start, corner, chess_corner, junction, cross") && message.ends_with("found chess"), "{message}");
         assert!(matches!(error("lsm:shape=8"), MethodError::Domain { .. }));

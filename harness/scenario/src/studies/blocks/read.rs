@@ -66,7 +66,7 @@ pub fn read(
 struct Names<'a> {
     targets: Vec<&'a str>,
     stations: Vec<&'a str>,
-    methods: Vec<&'a str>,
+    methods: &'a [Configured],
     /// Blocks that have problems of their own: who names them has none.
     broken: Vec<String>,
 }
@@ -76,7 +76,7 @@ impl<'a> Names<'a> {
         Self {
             targets: views.field.targets.iter().map(|target| target.id.as_str()).collect(),
             stations: views.stations.iter().map(|station| station.name.as_str()).collect(),
-            methods: methods.iter().map(|method| method.label.as_str()).collect(),
+            methods,
             broken: Vec::new(),
         }
     }
@@ -126,7 +126,14 @@ fn block(section: Section<'_>, names: &mut Names<'_>, earlier: &[Block], problem
         }
         found
     });
-    let chosen = wire.methods.as_ref().map(|listed| places("method", listed.get_ref(), &names.methods, problems));
+    let chosen = wire.methods.as_ref().map(|listed| {
+        let labels: Vec<&str> = names.methods.iter().map(|method| method.label.as_str()).collect();
+        let called = |name: &Spanned<String>| {
+            let label = names.methods.iter().find(|method| method.is_called(name.get_ref())).map_or(name.get_ref(), |method| &method.label);
+            Spanned::new(name.span(), label.clone())
+        };
+        places("method", &listed.get_ref().iter().map(called).collect::<Vec<_>>(), &labels, problems)
+    });
     let parameters = wire.parameters.as_ref().map(|listed| places("parameter", listed.get_ref(), &PARAMETERS, problems));
     if let (Some(by), Some(listed)) = (&wire.corrected_by, &wire.parameters)
         && !listed.get_ref().is_empty()

@@ -84,21 +84,22 @@ fn drawn_sigmas(
 ) -> Vec<(String, Option<f64>)> {
     let labels = || methods.iter().map(|method| method.label.as_str());
     for label in written.get_ref().keys() {
-        if label == POINTED || !labels().any(|known| known == label) {
+        if label == POINTED || !methods.iter().any(|method| method.is_called(label)) {
             let message =
                 format!("`drawn` has `{label}`: expected labels of the scenario's methods, `{POINTED}` apart, whose hand is [pointing]'s");
             problems.push(Problem::new(written.span(), message).nearest(label, labels()));
         }
     }
-    let sigma = |label: &str| {
-        let sigma = written.get_ref().get(label).map(|sigma| sigma.0);
+    let sigma = |method: &Configured| {
+        let label = method.label.as_str();
+        let sigma = written.get_ref().iter().find(|(text, _)| method.is_called(text)).map(|(_, sigma)| sigma.0);
         if sigma.is_none() && label != POINTED {
             let message = format!("`drawn` has no standard deviation for `{label}`: expected one for each method");
             problems.push(Problem::new(written.span(), message));
         }
         (label.to_owned(), sigma)
     };
-    labels().map(sigma).collect()
+    methods.iter().map(sigma).collect()
 }
 
 /// The fewest control points of the second step: a resection takes as many.
