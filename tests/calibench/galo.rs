@@ -5,7 +5,7 @@ use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Polygon, Scene, Start};
 use calibench_records::figures::Quantity;
 use calibench_records::results::find;
-use calibench_run::network::{ImagePoint, Job, Observed, Wanted, adjusted};
+use calibench_run::studies::network::{ImagePoint, Job, Observed, Wanted, adjusted};
 use calibench_scenario::{Subject, ViewsSubject, parse};
 use calibench_synth::draw;
 
@@ -239,7 +239,7 @@ fn only_y0_moves_farther_between_columns_than_in_plausible_networks() {
 
 /// y0 (mm) of the network of `network-coordinates`, of true image coordinates but for those that `spoiled` changes.
 fn y0(views: &ViewsSubject, spoiled: impl Fn(usize, PixelPoint) -> PixelPoint) -> (f64, usize) {
-    let mut calibration = views.calibration.clone().unwrap();
+    let mut calibration = views.study.network().cloned().unwrap();
     let Camera::Photogrammetric(truth) = views.camera else { panic!("a camera in mm") };
     calibration.start = truth;
     let job = Job { calibration: &calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
