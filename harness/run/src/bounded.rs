@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use calibench_model::Unknowns;
 use calibench_records::results::PointResult;
 
-use crate::Plan;
 use crate::bounds::BySet;
 
 /// The bounds of a trial, by view and target.
@@ -23,11 +23,12 @@ impl FromIterator<(Arc<str>, Arc<str>, BySet)> for TrialBounds {
 }
 
 impl TrialBounds {
-    /// Gives those of `points` that are of a method that `plan` asks for their bounds.
-    pub fn add_to(&self, points: &mut [PointResult], plan: &Plan<'_>) {
-        for point in points.iter_mut().filter(|point| plan.asks_for(point.method)) {
+    /// Gives `points` their bounds, each for what its method leaves unknown; `unknowns` are those of a method, `None` of one that is not asked for.
+    pub fn add_to(&self, points: &mut [PointResult], unknowns: impl Fn(usize) -> Option<Unknowns>) {
+        for point in points {
+            let Some(unknowns) = unknowns(point.method) else { continue };
             let bounds = self.0.get(&point.view).and_then(|targets| targets.get(&point.target));
-            point.bound = bounds.and_then(|bounds| bounds.get(&plan.unknowns(point.method)).copied().flatten());
+            point.bound = bounds.and_then(|bounds| bounds.get(&unknowns).copied().flatten());
         }
     }
 }

@@ -57,6 +57,7 @@ pub fn run(plan: &Plan<'_>, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial
     }
     let bounding = Plan { asked: Some(&bounded), images: None, data: plan.data.clone(), ..*plan };
     let bounds = if bounded.is_empty() { None } else { Some(bounding.bounding()?) };
+    let unknowns = |method: usize| bounding.asks_for(method).then(|| bounding.unknowns(method));
     let adjusting = Plan { asked: Some(&adjusted), images: None, data: plan.data.clone(), ..*plan };
     let mut images_kept = pictured;
     let Span { from, to } = plan.span();
@@ -68,7 +69,7 @@ pub fn run(plan: &Plan<'_>, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial
             let new = work.measured(&wanted, number, step)?;
             let mut trial = merged(plan, kept, new);
             if let Some(bounds) = &bounds {
-                bounds.of(&bounding, number)?.add_to(&mut trial.whole.points, &bounding);
+                bounds.of(&bounding, number)?.add_to(&mut trial.whole.points, unknowns);
             }
             if !adjusted.is_empty() {
                 let more = adjusting.adjust(&trial.whole, number);
