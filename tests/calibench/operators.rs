@@ -117,7 +117,7 @@ const ALONE: usize = 25;
 
 /// With its blur held at the lens's and estimated, without noise.
 fn matching(window: usize) -> [String; 2] {
-    ["sigma=0.7,sharpness=held", "sharpness=sought"].map(|blur| format!("lsm:window={window},{blur}"))
+    ["sigma=0.7,sharpness=0", "sharpness=1"].map(|blur| format!("lsm:window={window},{blur}"))
 }
 
 #[test]
@@ -199,6 +199,6 @@ fn a_tenth_of_noise_and_a_start_within_four_pixels_lose_less_than_one_in_a_thous
         assert!(points >= 2996 && lost.iter().all(|lost| upper_limit(*lost, points) <= 1e-3), "{methods:?} lose {lost:?} of {points}");
     };
     check(BOARD, &["parametric_corner"], 200);
-    check(&shapes(r#"["disc", "square", "triangle", "cross"]"#), &["lsm:window=31,sigma=0.7,sharpness=held", "lsm:window=31"], 150);
+    check(&shapes(r#"["disc", "square", "triangle", "cross"]"#), &["lsm:window=31,sigma=0.7,sharpness=0", "lsm:window=31"], 150);
     check(&shapes(r#"["disc"]"#), &["parametric_circle"], 150);
 }

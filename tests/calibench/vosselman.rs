@@ -27,7 +27,7 @@ fn bends(name: &str) -> [f64; 4] {
     // Matching over the window, the first three methods, loses no large target.
     let mut large = points.iter().filter(|point| point.method < 3 && point.target.contains("-large-"));
     assert!(large.all(|point| matches!(point.outcome, Outcome::Measured { .. })), "{name}");
-    let labels = ["pixel", "lsm:window=13,neighbours=0", "lsm:window=13,sharpness=0", "lsm:window=13,kinds"];
+    let labels = ["pixel", "lsm:window=13,neighbours=counted", "lsm:window=13,sharpness=held", "lsm:window=13,kinds"];
     labels.map(|label| {
         let method = scenario.methods.iter().position(|method| method.label.starts_with(label)).unwrap();
         let block = blocks.iter().find(|block| block.method == method && block.set == 0).unwrap();

@@ -49,7 +49,7 @@ impl Sources<'_> {
         match (kind, &parts[..]) {
             ("printed", [table, row, column]) => Some(self.cell(table, row, column)?.0),
             ("ours", [table, row, column]) => Some(self.cell(table, row, column)?.1.unwrap_or_else(|| NOT_RUN.to_owned())),
-            ("figure" | "error", [run, ..]) if self.is_not_run(run) => Some(NOT_RUN.to_owned()),
+            ("figure" | "error", _) if self.is_not_run(&parts) => Some(NOT_RUN.to_owned()),
             ("figure", [run, method, set, group, name]) => self.adjusted([run, method, set, group, name], 1.0),
             ("figure", [run, method, set, group, name, times]) => self.adjusted([run, method, set, group, name], times.parse().ok()?),
             ("error", [run, method]) => {
@@ -66,15 +66,20 @@ impl Sources<'_> {
         }
     }
 
-    /// Whether a scenario has no records.
-    fn is_not_run(&self, name: &str) -> bool {
-        !self.runs.iter().any(|loaded| loaded.name == name) && !self.sweeps.iter().any(|loaded| loaded.name == name)
+    /// Whether the scenario of a figure has no records, or a sweep not those of its cell.
+    fn is_not_run(&self, parts: &[&str]) -> bool {
+        let Some(name) = parts.first() else { return false };
+        match (self.sweeps.iter().find(|loaded| loaded.name == **name), parts) {
+            (Some(loaded), [_, _, cell]) => !loaded.sweep.cells.iter().any(|one| one.label == *cell),
+            (Some(_), _) => false,
+            (None, _) => !self.runs.iter().any(|loaded| loaded.name == **name),
+        }
     }
 
-    /// Whether `asked` asks for a figure of a scenario that has no records.
+    /// Whether `asked` asks for a figure of a scenario or a cell that has no records.
     pub fn asks_for_absent(&self, asked: &str) -> bool {
         let run = asked.strip_prefix("figure ").or_else(|| asked.strip_prefix("error "));
-        run.is_some_and(|rest| self.is_not_run(rest.split('|').next().unwrap_or_default().trim()))
+        run.is_some_and(|rest| self.is_not_run(&rest.split('|').map(str::trim).collect::<Vec<_>>()))
     }
 
     /// The number that `printed ...` asks for.
