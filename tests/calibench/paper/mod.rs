@@ -60,7 +60,7 @@ fn the_findings_stand_in_the_reports() {
     for finding in findings {
         let linked = readme.links().into_iter().filter(|link| finding.contains(&format!("]({link})")));
         let text: String =
-            linked.map(|link| std::fs::read_to_string(root().join(link.split('#').next().unwrap_or(link))).unwrap()).collect();
+            linked.map(|link| std::fs::read_to_string(root().join(link.split('#').next().unwrap_or(&link))).unwrap()).collect();
         let figures: Vec<&str> = finding
             .split(|c: char| !(c.is_ascii_digit() || c == '.'))
             .map(|word| word.trim_end_matches('.'))
