@@ -21,13 +21,13 @@ struct Predictions {
     prediction: Vec<Prediction>,
     /// Those on public photographs, stated before these were measured.
     #[serde(default)]
-    photographs: Vec<Stated>,
+    photographs: Vec<OnPhotographs>,
 }
 
 /// A prediction on photographs that are no part of this project: its figures are stated, and not from records.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Stated {
+struct OnPhotographs {
     /// Which photographs, and how they are measured.
     experiment: String,
     /// What is measured, with its unit.
@@ -105,7 +105,7 @@ pub fn page(family: &str, folder: &Path, sources: &Sources<'_>) -> Result<Option
 }
 
 /// The predictions on public photographs, with what became of them.
-fn stated(all: &[Stated]) -> Result<String, Problem> {
+fn stated(all: &[OnPhotographs]) -> Result<String, Problem> {
     if all.is_empty() {
         return Ok(String::new());
     }

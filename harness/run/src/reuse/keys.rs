@@ -86,10 +86,10 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
         ("arithmetic", arithmetic()),
     ];
     let apart = plan.is_adjusted_apart();
-    let methods = if !plan.scenario.subject.is_measured() {
-        vec![together(plan, reuse, &common, &trials)]
-    } else {
+    let methods = if plan.scenario.subject.is_measured() {
         plan.available().into_iter().map(|method| of_method(plan, reuse, &common, (&trials, apart), method)).collect()
+    } else {
+        vec![together(plan, reuse, &common, &trials)]
     };
     // Which image is shown depends on what is measured in which, and on what can measure.
     let labels = plan.all_available().into_iter().map(|method| ("method", plan.methods[method].label.as_str()));

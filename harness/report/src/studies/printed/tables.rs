@@ -74,9 +74,8 @@ pub fn again(found: &Summaries, sets: &Printed) -> String {
         let counts = [Quantity::StartsAlike, Quantity::PredictedNear];
         let counts = counts.map(|figure| value(found, set, figure.into()).map_or_else(String::new, |count| format!("{count:.0}")));
         let is_first = sets.network.as_ref().is_some_and(|network| network.set == set);
-        let of_column = |column: &str, [alone, among]: [Quantity; 2]| match is_first {
-            true => value(found, column, alone.of(&[unit])),
-            false => value(found, set, among.of(&[column, unit])),
+        let of_column = |column: &str, [alone, among]: [Quantity; 2]| {
+            if is_first { value(found, column, alone.of(&[unit])) } else { value(found, set, among.of(&[column, unit])) }
         };
         let columns = columns.iter().flat_map(|column| OF_COLUMN.map(|(_, figures)| cell(of_column(column, figures))));
         table.row([name.to_owned(), misfit].into_iter().chain(counts).chain(columns));
