@@ -192,7 +192,7 @@ fn choices_in_older_baselines_are_read_by_their_names() {
                 let old = format!("{}={place}", parameter.name);
                 let now = registry.parse(&format!("{}:{old}", method.name)).unwrap();
                 let named = now.settings.written().find(|(name, _)| *name == parameter.name).map(|(name, value)| format!("{name}={value}"));
-                assert_eq!(Some(calibench_gate::present_settings(method.name, &old)), named, "{}", method.name);
+                assert_eq!(Some(calibench_records::spelling::present_settings(method.name, &old)), named, "{}", method.name);
                 seen += 1;
             }
         }

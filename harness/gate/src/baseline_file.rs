@@ -7,11 +7,10 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use calibench_files::atomic::write_atomically;
+use calibench_records::spelling::{present_label, present_settings};
 use csv::{Position, StringRecord};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-
-use crate::spelling::{present_label, present_settings};
 
 /// The number of this format.
 const FORMAT: u32 = 2;

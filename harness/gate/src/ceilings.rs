@@ -33,6 +33,7 @@ pub struct Ceiling {
     /// The scenario's name.
     pub scenario: String,
     /// The method's label.
+    #[serde(deserialize_with = "calibench_records::spelling::label")]
     pub method: String,
     /// What is bounded.
     pub metric: CeilingMetric,

@@ -18,6 +18,7 @@ pub mod plain;
 pub mod points;
 pub mod results;
 pub mod score;
+pub mod spelling;
 pub mod statistics;
 pub mod stored;
 pub mod theory;

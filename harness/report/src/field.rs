@@ -153,6 +153,12 @@ pub(crate) fn shade(part: f64) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
+/// The same as red, green and blue.
+pub(crate) fn rgb(part: f64) -> [u8; 3] {
+    let colour = shade(part);
+    [colour.0, colour.1, colour.2]
+}
+
 /// All colours of [`shade`] beside a map of a size, from the bottom up: where they stand, x and the rows of both ends.
 pub(crate) fn shades_beside(area: &Area<'_>, map: (u32, u32)) -> (i32, i32, i32) {
     let x = (LEFT + map.0) as i32 + 20;

@@ -228,4 +228,19 @@ mod tests {
         }
         assert!(Sources { tables: Vec::new(), runs: Vec::new(), sweeps: Vec::new() }.first_screen(Path::new("/absent")).unwrap().is_none());
     }
+
+    /// A sweep may be run in part: what a page asks of the rest is no mistake. A method that is not in it is one.
+    #[test]
+    fn a_cell_that_was_not_run_is_said_so() {
+        let mut loaded = crate::tests::swept::loaded();
+        loaded.sweep.cells[0].label = "blur=0.5, noise=0".into();
+        let sources = Sources { tables: Vec::new(), runs: Vec::new(), sweeps: vec![&loaded] };
+        let asked = |text: &str| sources.figure(text);
+        assert_eq!(asked("error s | m | blur=1, noise=0").as_deref(), Some(NOT_RUN));
+        assert!(sources.asks_for_absent("error s | m | blur=1, noise=0") && sources.asks_for_absent("error t | m"));
+        // Of (1, 2) and (3, 4) px in two dimensions: the root of (5 + 25) / 2.
+        assert_eq!(asked("error s | m | blur=0.5, noise=0"), Some(plain(15.0_f64.sqrt())));
+        assert!(!sources.asks_for_absent("error s | m | blur=0.5, noise=0"));
+        assert_eq!(asked("error s | n | blur=0.5, noise=0"), None);
+    }
 }

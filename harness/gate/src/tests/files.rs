@@ -36,6 +36,25 @@ fn a_baseline_is_read_as_it_was_written_and_written_as_it_was_read() {
     }
 }
 
+/// Before choices had names they were numbers, in labels and in settings; the rows name their method by its place.
+#[test]
+fn a_baseline_of_0_2_0_is_that_of_todays_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = baseline_path(folder.path(), "f/s");
+    let trials = [vec![point(0, "a", [0.5, 0.25])]];
+    let mut old = table(Coordinates::Errors, &[info("lsm:window=13,neighbours=0", "2")], &trials);
+    old.describe("lsm:window=13,neighbours=0", "window=13,shape=2,neighbours=0".into(), String::new());
+    write_baseline(&path, &old).unwrap();
+    let mut now = table(Coordinates::Errors, &[info("lsm:window=13,neighbours=counted", "2")], &trials);
+    now.describe("lsm:window=13,neighbours=counted", "window=13,shape=chess_corner,neighbours=counted".into(), String::new());
+    assert!(read_baseline(&path, "f/s").unwrap().unwrap().0.methods().eq(now.methods()));
+
+    let ceiling =
+        "[[ceiling]]\nscenario = 'f/s'\nmethod = 'lsm:window=13,neighbours=0'\nmetric = 'max_error'\nat_most = 0.1\nwhy = 'a test'\n";
+    let found = Ceilings::parse("c.toml", ceiling).unwrap().check(&[&now]);
+    assert!(found.len() == 1 && found[0].now == Some(0.5_f64.hypot(0.25)), "{found:?}");
+}
+
 #[test]
 fn the_rows_are_sorted_and_have_their_decimals() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,9 +3,9 @@
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{Cell, OUTLIER_ALPHA, Principal, Summary, Trusted};
 
-use crate::field::shade;
+use crate::field::rgb;
 use crate::plain;
-use crate::plot::{Axis, Figure, Plot, Said, Shape};
+use crate::plot::{Axis, Figure, Plot, Said, Shape, around};
 
 /// Operators up to which a cell has room for its interval.
 const INTERVALS: usize = 7;
@@ -79,8 +79,7 @@ pub(super) fn holdout(summary: &Summary, trusted: &Trusted<'_>) -> Figure {
             };
             let numbers = [found.value, found.interval.0, found.interval.1].map(plain);
             let said = Said::of([method.clone(), model.clone()].into_iter().chain(numbers));
-            let colour = shade(0.5 * part(found.value));
-            plot.cell([(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)], Some([colour.0, colour.1, colour.2]), &said);
+            plot.cell([(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)], Some(rgb(0.5 * part(found.value))), &said);
             if methods.len() > INTERVALS {
                 plot.note((x, y), &plain(found.value), true);
             } else {
@@ -94,8 +93,6 @@ pub(super) fn holdout(summary: &Summary, trusted: &Trusted<'_>) -> Figure {
         let x = methods.iter().position(|name| **name == *cell.method)? as f64;
         Some((x, models_up.iter().position(|name| **name == *cell.model)? as f64))
     };
-    let around =
-        |(x, y): (f64, f64)| [(-0.48, -0.46), (0.48, -0.46), (0.48, 0.46), (-0.48, 0.46), (-0.48, -0.46)].map(|(dx, dy)| (x + dx, y + dy));
     let is_least = trusted.least.method == trusted.cell.method && trusted.least.model == trusted.cell.model;
     if let Some(least) = place(trusted.least).filter(|_| !is_least) {
         plot.dashed(&around(least));
@@ -168,11 +165,10 @@ pub(super) fn halves(cell: &Cell) -> Vec<Figure> {
                 [at, at + 1].map(|i| i as f64 / ticks.len() as f64 * f64::from(length) - 0.5)
             };
             let ([x0, x1], [y0, y1]) = (edge(&xs, x, size.width), edge(&ys, y, size.height));
-            let colour = shade(shown(place) / most);
             let said = Said::of([format!("{x:.0}"), format!("{y:.0}"), plain(found), plain(predicted)]);
-            plot.cell([(x0, y0), (x1, y1)], Some([colour.0, colour.1, colour.2]), &said);
+            plot.cell([(x0, y0), (x1, y1)], Some(rgb(shown(place) / most)), &said);
         }
-        plot.shades("px", &[0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (part, plain(part * most))));
+        plot.shades_to("px", most);
         plot
     };
     let found = draw("halves", "RMS difference of two halves over the frame", |place| place.2);

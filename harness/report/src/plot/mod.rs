@@ -10,6 +10,7 @@ mod svg;
 use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 
+use crate::plain;
 pub(crate) use axis::Axis;
 pub(crate) use figure::Figure;
 use mark::{Element, Entry, Shades};
@@ -143,6 +144,11 @@ impl Plot {
         self.shades = Some(Shades { title: title.to_owned(), levels: levels.to_vec() });
     }
 
+    /// A scale of shades from 0 to `top`.
+    pub(crate) fn shades_to(&mut self, title: &str, top: f64) {
+        self.shades(title, &[0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (part, plain(part * top))));
+    }
+
     /// A place of the drawing whose axes lie at left, top, width and height.
     fn place(&self, [left, top, width, height]: [f64; 4], (x, y): (f64, f64)) -> (f64, f64) {
         (left + self.x.part(x) * width, top + (1.0 - self.y.part(y)) * height)
@@ -162,6 +168,11 @@ impl Plot {
         let longest = self.y.names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         (24.0 + LETTER * longest as f64).max(usual)
     }
+}
+
+/// A line around the cell of two names, a little inside it.
+pub(crate) fn around((x, y): (f64, f64)) -> [(f64, f64); 5] {
+    [(-0.48, -0.46), (0.48, -0.46), (0.48, 0.46), (-0.48, 0.46), (-0.48, -0.46)].map(|(dx, dy)| (x + dx, y + dy))
 }
 
 #[cfg(test)]

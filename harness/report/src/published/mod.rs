@@ -53,6 +53,8 @@ pub struct Table {
     /// The scenario whose records stand behind the cells, as in `galo-2011/corners`.
     pub scenario: String,
     /// The method behind the cells, by its label, as in `forstner:window=11`.
+    #[serde(deserialize_with = "calibench_records::spelling::label")]
+    #[schemars(with = "String")]
     pub method: String,
     /// The columns, in their order.
     pub columns: Vec<String>,
@@ -146,7 +148,8 @@ pub struct Cell {
     #[serde(default)]
     pub misprint: Option<String>,
     /// The method by its label, where it is not the table's.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "calibench_records::spelling::optional_label")]
+    #[schemars(with = "Option<String>")]
     pub method: Option<String>,
     /// The parameter of the interior orientation, for figures of adjustments; `c` by default.
     #[serde(default)]
@@ -183,7 +186,8 @@ pub struct Cell {
 #[serde(deny_unknown_fields)]
 pub struct Divisor {
     /// The method by its label.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "calibench_records::spelling::optional_label")]
+    #[schemars(with = "Option<String>")]
     pub method: Option<String>,
     /// The set of parameters or the block.
     #[serde(default)]

@@ -120,6 +120,14 @@ mod tests {
     }
 
     #[test]
+    fn labels_of_older_tables_are_those_of_today() {
+        let text = "title='t'\nsource='s'\nunit='px'\nscenario='a'\nmethod='lsm:window=13,neighbours=0'\ncolumns=['C']\n[[cell]]\nrow='1'\ncolumn='C'\nprinted='2.5'\nmetric='mean_dx'\nkind='prediction'\nmethod='lsm:window=15,shape=2'\n";
+        let table = parse("t.toml", text).unwrap();
+        assert_eq!(table.method, "lsm:window=13,neighbours=counted");
+        assert_eq!(table.cells[0].method.as_deref(), Some("lsm:window=15,shape=chess_corner"));
+    }
+
+    #[test]
     fn tables_are_read_in_the_order_of_their_files() {
         let folder = tempfile::tempdir().unwrap();
         let paper = folder.path().join("paper");

@@ -4,7 +4,7 @@ use calibench_adjust::Status;
 use calibench_calibrate::{Board, Calibration};
 
 use super::super::board::adjusted;
-use super::rgb;
+use crate::field::rgb;
 use crate::levels::contour;
 use crate::plain;
 use crate::plot::{Axis, Figure, Plot, Said};

@@ -2,7 +2,7 @@
 
 use super::super::limits::CORRELATED;
 use super::OfCamera;
-use crate::plot::{Axis, Figure, Plot, Said};
+use crate::plot::{Axis, Figure, Plot, Said, around};
 
 /// Height and width of the matrix, px of a drawing.
 const SIDE: f64 = 520.0;
@@ -30,8 +30,7 @@ pub(super) fn figure(of: &OfCamera<'_, '_>) -> Option<Figure> {
     }
     plot.series(7, None, &[""]);
     for (x, y) in cells().filter(|(i, j)| i != j && all[(places[*i], places[*j])].abs() > CORRELATED).map(middle) {
-        let corners = [(-0.48, -0.46), (0.48, -0.46), (0.48, 0.46), (-0.48, 0.46), (-0.48, -0.46)];
-        plot.line(&corners.map(|(dx, dy)| (x + dx, y + dy)), &Said::default());
+        plot.line(&around((x, y)), &Said::default());
     }
     let caption = "Correlations of the interior orientation, blue negative, orange positive, framed where |rho| exceeds 0.9.";
     Some(of.figure("correlations", (caption, String::new()), plot))

@@ -5,7 +5,8 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::without_distortion;
 
-use super::{OfCamera, rgb};
+use super::OfCamera;
+use crate::field::rgb;
 use crate::plain;
 use crate::plot::{Figure, Plot, Said};
 
@@ -89,7 +90,7 @@ pub(super) fn distortion(of: &OfCamera<'_, '_>) -> Option<Figure> {
     {
         plot.arrow(from, ((at.x - from.x) * times, (at.y - from.y) * times), &Said::default());
     }
-    plot.shades("px", &[0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (part, plain(part * top))));
+    plot.shades_to("px", top);
     let caption = "How far distortion moves points, from where the same camera without it pictures their rays to where they are. White: no such place.";
     let remark = format!("arrows {times} times their length; at most {} px", plain(most));
     Some(of.figure("distortion", (caption, remark), plot))

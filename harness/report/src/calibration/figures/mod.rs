@@ -11,7 +11,6 @@ use calibench_calibrate::Calibration;
 use super::uncertainty::UncertaintyMap;
 use crate::Canvas;
 use crate::corners::Corner;
-use crate::field::shade;
 use crate::plot::{Figure, Plot};
 
 pub(super) use residuals::corners;
@@ -81,10 +80,4 @@ pub(super) fn named(calibration: &Calibration<'_>, camera: usize) -> (String, St
         1 => (String::new(), String::new()),
         _ => (format!("{}-", calibration.name_of(camera)), format!("{}: ", calibration.name_of(camera))),
     }
-}
-
-/// A part of the scale of shades, 0 to 1, as red, green and blue.
-fn rgb(part: f64) -> [u8; 3] {
-    let colour = shade(part);
-    [colour.0, colour.1, colour.2]
 }

@@ -4,8 +4,9 @@ use calibench_adjust::Distance;
 use calibench_model::camera::{CameraModel, ImageSize};
 
 use super::super::uncertainty::UncertaintyMap;
+use super::OfCamera;
 use super::maps::cell;
-use super::{OfCamera, rgb};
+use crate::field::rgb;
 use crate::levels::{Scale, contour};
 use crate::plain;
 use crate::plot::{Figure, Plot, Said};

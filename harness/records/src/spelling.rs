@@ -1,4 +1,6 @@
-//! Settings as they were written before choices had names: baselines of calibench 0.2.0 and older have numbers in their place.
+//! Settings as they were written before choices had names: files of calibench 0.2.0 and older have numbers in their place.
+
+use serde::{Deserialize, Deserializer};
 
 /// The choices of operators whose value was a place in a list: operator, parameter, names.
 const NAMED: [(&str, &str, &[&str]); 17] = [
@@ -32,6 +34,22 @@ pub fn present_label(label: &str) -> String {
 /// Settings of an operator, as `window=15,shape=2`, as they are written today.
 pub fn present_settings(operator: &str, settings: &str) -> String {
     settings.split(',').map(|setting| present(operator, setting)).collect::<Vec<_>>().join(",")
+}
+
+/// Reads a label, for serde.
+///
+/// # Errors
+/// What is no text.
+pub fn label<'de, D: Deserializer<'de>>(written: D) -> Result<String, D::Error> {
+    String::deserialize(written).map(|label| present_label(&label))
+}
+
+/// Reads a label that may be absent, for serde.
+///
+/// # Errors
+/// What is no text.
+pub fn optional_label<'de, D: Deserializer<'de>>(written: D) -> Result<Option<String>, D::Error> {
+    Ok(Option::<String>::deserialize(written)?.map(|label| present_label(&label)))
 }
 
 fn present(operator: &str, setting: &str) -> String {
