@@ -175,6 +175,8 @@ fn maps_say_what_their_tables_say_where_it_is() {
         }
         let points = by_name(folder);
         let counts = cells(&html, "distribution");
+        assert_eq!(counts.len(), 120, "12 x 10 squares");
+        assert!(counts.iter().all(|([_, _, width, height], _)| (width / height - 1.0).abs() < 0.1), "{:?}", counts[0]);
         for (place, said) in &counts {
             let inside = points.values().filter(|row| is_in(*place, number(row, "x"), number(row, "y"))).count();
             assert_eq!(said[0], inside.to_string(), "{place:?}");
@@ -190,5 +192,47 @@ fn maps_say_what_their_tables_say_where_it_is() {
             assert_eq!(said[1], format!("{expected:.4}"));
         }
         assert_eq!(rho.len(), 10);
+    });
+}
+
+/// Where a line of equal standard deviation ends, the table has its level: linear between its places, as lines are drawn.
+#[test]
+fn lines_of_equal_standard_deviation_lie_where_the_table_has_their_level() {
+    written(|calibration, folder| {
+        let html = page(calibration, &[]);
+        let far: Vec<[f64; 3]> = rows(&folder.join("uncertainty.csv"))
+            .iter()
+            .filter(|row| row["distance"] == "far")
+            .map(|row| ["x", "y", "sigma"].map(|column| number(row, column)))
+            .collect();
+        let axis = |of: usize| {
+            let mut ticks: Vec<f64> = far.iter().map(|place| place[of]).collect();
+            ticks.sort_by(f64::total_cmp);
+            ticks.dedup();
+            ticks
+        };
+        let (xs, ys) = (axis(0), axis(1));
+        let sigma = |x: f64, y: f64| {
+            let cell = |ticks: &[f64], value: f64| (ticks.partition_point(|tick| *tick <= value).max(1) - 1).min(ticks.len() - 2);
+            let (column, row) = (cell(&xs, x), cell(&ys, y));
+            let [u, v] = [(x - xs[column]) / (xs[column + 1] - xs[column]), (y - ys[row]) / (ys[row + 1] - ys[row])];
+            let at = |column: usize, row: usize| far[row * xs.len() + column][2];
+            let along = |row: usize| at(column, row) + (at(column + 1, row) - at(column, row)) * u;
+            along(row) + (along(row + 1) - along(row)) * v
+        };
+        let figure = between(&html, "id=\"uncertainty-far\"", "</figure>");
+        let levels: Vec<f64> = figure.split("class=\"note tag\"").skip(1).map(|rest| between(rest, "\">", "<").parse().unwrap()).collect();
+        assert!(!levels.is_empty());
+        let mut ends = 0;
+        for line in figure.split("<path class=\"contour\" d=\"").skip(1) {
+            let places: Vec<f64> = numbers(&line.split('"').next().unwrap().replace(['M', 'L'], " "));
+            let values: Vec<f64> =
+                places.chunks_exact(2).map(|at| sigma((at[0] - 76.0) / 0.76 - 0.5, (at[1] - 30.0) / 0.76 - 0.5)).collect();
+            // Hundredths of a pixel of the drawing are all that is written.
+            let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
+            assert!(high / low < 1.002, "one line has from {low} to {high}");
+            ends += values.len();
+        }
+        assert!(ends > 50, "{ends}");
     });
 }

@@ -216,3 +216,31 @@ pub(super) fn principal(principal: &Principal) -> Figure {
     let remark = format!("standard deviations in x and y: {a} px, {b} px of halves, {c} px, {d} px of all");
     figure("principal-point", (caption.into(), remark), plot)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibench_records::judgement::Split;
+
+    /// Two places of 101 x 1 px: halves differ there by 2 and 4 px, and by 1 and 8 as predicted. One scale serves both maps.
+    #[test]
+    fn what_halves_do_and_what_they_should_are_two_maps_of_one_scale() {
+        let mut cell = crate::judgement::tests::judged().cells.swap_remove(0);
+        (cell.map, cell.split) = (
+            vec![(0.0, 0.0, 2.0, 1.0), (100.0, 0.0, 4.0, 8.0)],
+            Some(Split { difference: 3.0, predicted: 5.0, modes: 1.0, p: 0.5, count: 9 }),
+        );
+        let fills = |figure: &Figure| -> Vec<String> {
+            let html = figure.html();
+            html.split("<rect class=\"cell\"").skip(1).map(|rest| rest.split("fill=\"").nth(1).unwrap()[..7].to_owned()).collect()
+        };
+        let hex = |part: f64| {
+            let [r, g, b] = rgb(part);
+            format!("#{r:02x}{g:02x}{b:02x}")
+        };
+        let [found, predicted] = <[Figure; 2]>::try_from(halves(&cell)).unwrap();
+        assert_eq!((found.name.as_str(), predicted.name.as_str()), ("halves", "halves-predicted"));
+        assert_eq!(fills(&found), [hex(0.25), hex(0.5)]);
+        assert_eq!(fills(&predicted), [hex(0.125), hex(1.0)]);
+    }
+}

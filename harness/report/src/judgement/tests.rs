@@ -59,7 +59,7 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-fn judged() -> Summary {
+pub(super) fn judged() -> Summary {
     Summary::new(&rows(), 1)
 }
 

@@ -39,7 +39,7 @@ pub(super) fn write(out: &mut String, text: &Written, lettering: Lettering) {
         let rim = if text.has_rim { format!("{RIM} paint-order=\"stroke\"") } else { String::new() };
         write!(out, "<text x=\"{x}\" y=\"{y}\"{}{turn}{rim}>{letters}</text>", style(text))
     } else {
-        // Many programs know no order of painting: the rim is a text of its own below.
+        // Not all programs know `paint-order` (CairoSVG 2.9.1 does not, and draws the rim over the letters): the rim is a text of its own below.
         let style = attributes(text);
         let rim = if text.has_rim { format!("<text x=\"{x}\" y=\"{y}\"{style}{turn}{RIM}>{letters}</text>") } else { String::new() };
         write!(out, "{rim}<text x=\"{x}\" y=\"{y}\"{style}{turn}>{letters}</text>")
