@@ -79,6 +79,7 @@ summary:
 nightly: build wheel
     {{calibench}} check --strict --locked --nightly
     {{calibench}} run --all
+    {{calibench}} run $(cd scenarios && ls league/*.toml | sed 's|[.]toml$||')
     {{calibench}} check --strict --locked --nightly --records records
     {{calibench}} check --strict --locked --nightly --against records --records records
     CALIBENCH_NIGHTLY=1 cargo test {{everything}} --test calibench determinism
@@ -103,10 +104,15 @@ lint:
     cargo clippy {{everything}} --all-targets --quiet -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
+    sh -n .ci/league-env
 
 # Camera files that we write, read and projected by the tools' own packages (`./bootstrap peers` installs them)
 peers:
     cargo test {{everything}} --test calibench peers::
+
+# The environments of the league's systems, each in one version, pinned, in target/league: NAME... or --all; --list lists them
+league-env *NAMES:
+    .ci/league-env {{NAMES}}
 
 # Small faults in what scores, gates, adjusts and reports that no test of its crate notices: COUNT mutants by SEED, at most MINUTES (`./bootstrap mutants` installs cargo-mutants)
 mutants SEED="2026" COUNT="200" MINUTES="60":

@@ -57,6 +57,15 @@ def aprilgrid(image, words, asked):
     return [(f"t{tag}c{corner}", xy) for tag, four in found for corner, xy in zip((1, 0, 3, 2), four.reshape(4, 2).tolist())]
 
 
+def gridboard(image, words, asked):
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.markerBorderBits = 2 if "border2" in words else 1
+    parameters.cornerRefinementMethod = int(asked.get("refinement", 1))
+    corners, ids, _ = cv2.aruco.ArucoDetector(dictionary(words[3]), parameters).detectMarkers(image)
+    found = [] if ids is None else zip(ids.ravel().tolist(), corners)
+    return [(f"t{tag}c{corner}", xy) for tag, four in found for corner, xy in enumerate(four.reshape(4, 2).tolist())]
+
+
 def find(image, board, asked):
     kind, *words = board.split(":")
     if kind == "chessboard":
@@ -65,6 +74,8 @@ def find(image, board, asked):
         return charuco(image, words)
     if kind == "aprilgrid":
         return aprilgrid(image, words, asked)
+    if kind == "gridboard":
+        return gridboard(image, words, asked)
     return circles(image, words, cv2.CALIB_CB_ASYMMETRIC_GRID if kind == "acircles" else cv2.CALIB_CB_SYMMETRIC_GRID)
 
 

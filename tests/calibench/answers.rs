@@ -110,7 +110,7 @@ fn same_parameters(found: &Value, rows: &Table) {
     }
 }
 
-/// A control point that is not where its file says.
+/// An image point in gross error: kept, it is a doubt; by default it is left out, and named.
 #[test]
 fn doubts_are_told_and_end_with_their_exit_code() {
     let folder = wall();
@@ -120,8 +120,8 @@ fn doubts_are_told_and_end_with_their_exit_code() {
     let x: f64 = cells[2].parse().unwrap();
     points = points.replacen(&moved, &moved.replacen(cells[2], &(x + 4.0).to_string(), 1), 1);
     write(folder.path(), "points.csv", &points);
-    let words = run(folder.path(), &WALL);
-    let output = run(folder.path(), &[&WALL[..], &["--json"]].concat());
+    let words = run(folder.path(), &[&WALL[..], &["--plain"]].concat());
+    let output = run(folder.path(), &[&WALL[..], &["--json", "--plain"]].concat());
     let found = answer(&output);
     assert_eq!((output.status.code(), words.status.code()), (Some(3), Some(3)), "{found}");
     let headline = stdout(&words).lines().next().unwrap().to_owned();
@@ -136,11 +136,16 @@ fn doubts_are_told_and_end_with_their_exit_code() {
     let refused = run(folder.path(), &["calibrate", "--json", "--points", "none.csv", "--control", "control.csv", "--size", "1600x1200"]);
     assert_eq!((refused.status.code(), stdout(&refused).as_str()), (Some(2), ""));
     // Rejected points are named.
-    let output = run(folder.path(), &[&WALL[..], &["--json", "--snoop"]].concat());
-    let found = answer(&output);
-    let rejected = &list(&found["rejected"])[0];
-    assert_eq!((rejected["image"].as_str(), rejected["target"].as_str()), (Some(cells[0]), Some(cells[1])), "{found}");
-    assert!(rejected["left_out"] == true && found["counts"]["not_in_full"].as_u64() >= Some(1), "{found}");
+    for asked in [&["--json"][..], &["--json", "--snoop"]] {
+        let output = run(folder.path(), &[&WALL[..], asked].concat());
+        let found = answer(&output);
+        let rejected = &list(&found["rejected"])[0];
+        assert_eq!((rejected["image"].as_str(), rejected["target"].as_str()), (Some(cells[0]), Some(cells[1])), "{found}");
+        assert!(rejected["left_out"] == true && found["counts"]["not_in_full"].as_u64() >= Some(1), "{found}");
+        assert!(output.status.success(), "{found}");
+    }
+    let said = format!("1 image points were rejected and left out: the worst, {} in {}, is ", cells[1], cells[0]);
+    assert!(stdout(&run(folder.path(), &WALL)).contains(&said));
 }
 
 #[test]

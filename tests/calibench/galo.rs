@@ -1,12 +1,7 @@
 //! What the report says of Galo's Table 1, searched for again.
 
-use calibench_measure::{Operator, Registry, forstner::Forstner};
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_measure::{Operator, forstner::Forstner};
 use calibench_model::{PixelPoint, Polygon, Scene, Start};
-use calibench_records::figures::Quantity;
-use calibench_records::results::find;
-use calibench_run::studies::network::{ImagePoint, Job, Observed, Wanted, adjusted};
-use calibench_scenario::{Subject, ViewsSubject, parse};
 use calibench_synth::draw;
 
 /// Columns and rows of the image around a corner, px; the corner lies near its middle.
@@ -171,113 +166,4 @@ fn rendered_right_angles_on_the_pixel_grid_have_the_closed_form_bias() {
             assert!(ex.abs() < 1e-7 && ey.abs() < 1e-7, "{sx} {sy} {window}: {ex:e} {ey:e}");
         }
     }
-}
-
-/// What the networks of the report were chosen by, and what follows from their own figures: a column in another's place shows.
-#[test]
-fn the_plausible_networks_are_those_that_were_asked_for() {
-    let path = crate::project::root().join("reference/published/galo-2011/networks.csv");
-    let text = std::fs::read_to_string(path).unwrap();
-    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let names = lines.next().unwrap();
-    let rows: Vec<Vec<f64>> = lines.map(|line| line.iter().map(|field| field.parse().unwrap()).collect()).collect();
-    assert_eq!((names.len(), rows.len()), (46, 240));
-    for row in &rows {
-        let of = |name: &str| row[names.iter().position(|known| *known == name).unwrap_or_else(|| panic!("no column {name}"))];
-        let like = |name: &str, printed: f64, within: f64| assert!((of(name) / printed).ln().abs() < within, "{name}: {row:?}");
-        assert!((316.0..=336.0).contains(&of("image_points")) && of("rolled") <= 10.0 && (0.1..=1.0).contains(&of("survey_mm")), "{row:?}");
-        let chosen = [("c", 0.0411), ("x0", 0.0305), ("y0", 0.0426), ("k1", 0.000_027_2)];
-        chosen.iter().for_each(|(name, printed)| like(&format!("sigma_{name}_pixel"), *printed, 0.1001));
-        for column in ["9", "15"] {
-            let factors = chosen.map(|(name, _)| {
-                let factor = of(&format!("sigma_{name}_{column}")) / of(&format!("sigma_{name}_pixel"));
-                like(&format!("factor_{name}_{column}"), factor, 2e-4);
-                factor
-            });
-            like(&format!("factor_mean_{column}"), factors.iter().sum::<f64>() / 4.0, 2e-4);
-        }
-        for axis in ["xy", "z"] {
-            like(&format!("factor_{axis}"), of(&format!("relative_{axis}_15")) / of(&format!("relative_{axis}_pixel")), 2e-4);
-        }
-        // Noise falls from column to column; the least is what the hand's whole pixels leave.
-        assert!(
-            of("noise_15_px") < of("noise_9_px") && of("noise_9_px") < of("noise_pixel_px") && of("noise_pixel_px") > 0.2886,
-            "{row:?}"
-        );
-    }
-}
-
-/// By how much the printed values of a parameter move from the first column of Table 2 to a further one, in their standard deviation there.
-const MOVES: [(&str, f64); 8] = [
-    ("move_c_9", (16.5420 - 16.5514) / 0.0411),
-    ("move_x0_9", (-0.0592 + 0.0124) / 0.0305),
-    ("move_y0_9", (-0.0164 + 0.1804) / 0.0426),
-    ("move_k1_9", (-3.450 + 3.874) / 0.272),
-    ("move_c_15", (16.5737 - 16.5514) / 0.0411),
-    ("move_x0_15", (-0.0532 + 0.0124) / 0.0305),
-    ("move_y0_15", (-0.0561 + 0.1804) / 0.0426),
-    ("move_k1_15", (-3.727 + 3.874) / 0.272),
-];
-
-/// Nothing of the networks was chosen by the values: of the printed ones only y0 moves farther than in one plausible network of fifty.
-#[test]
-fn only_y0_moves_farther_between_columns_than_in_plausible_networks() {
-    let text = std::fs::read_to_string(crate::project::root().join("reference/published/galo-2011/networks.csv")).unwrap();
-    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
-    for (name, printed) in MOVES {
-        let place = names.iter().position(|known| *known == name).unwrap();
-        let moves: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(place).unwrap().parse::<f64>().unwrap().abs()).collect();
-        let farther = moves.iter().filter(|other| **other >= printed.abs()).count();
-        let share = farther as f64 / moves.len() as f64;
-        assert!(
-            if name.starts_with("move_y0") { share < 0.02 } else { share > 0.05 },
-            "{name}: {printed}, {farther} of {} move as far",
-            moves.len()
-        );
-    }
-}
-
-/// y0 (mm) of the network of `network-coordinates`, of true image coordinates but for those that `spoiled` changes.
-fn y0(views: &ViewsSubject, spoiled: impl Fn(usize, PixelPoint) -> PixelPoint) -> (f64, usize) {
-    let mut calibration = views.study.network().cloned().unwrap();
-    let Camera::Photogrammetric(truth) = views.camera else { panic!("a camera in mm") };
-    calibration.start = truth;
-    let job = Job { calibration: &calibration, field: &views.field, unit: views.unit, camera: &views.camera, stations: &views.stations };
-    let place = |target: usize| views.field.position(&views.field.targets[target]);
-    let size = views.camera.size();
-    let mut points = Vec::new();
-    for (view, station) in views.stations.iter().enumerate() {
-        for target in 0..views.field.targets.len() {
-            let at = views.camera.project(station.pose.ray(&place(target))).unwrap();
-            if at.x > 0.0 && at.y > 0.0 && at.x < f64::from(size.width) - 1.0 && at.y < f64::from(size.height) - 1.0 {
-                points.push(ImagePoint { method: 0, view, target, at: spoiled(points.len(), at) });
-            }
-        }
-    }
-    let (count, poses) = (points.len(), views.stations.iter().map(|station| station.pose).collect::<Vec<_>>());
-    let observed = Observed { points, control: (0..views.field.targets.len()).map(place).collect() };
-    let found = adjusted(&job, &observed, 0, &["c", "x0", "y0", "k1"], &poses, Wanted::Interior).unwrap();
-    (find(&found.figures, Quantity::Parameter.of(&["y0"])).unwrap().value, count)
-}
-
-/// No coordinate that one column has misread explains why y0 moves by 0.164 mm: that would take 18 px. Another origin of the rows, by 35 px, does.
-#[test]
-fn no_single_mark_moves_y0_as_far_as_printed() {
-    let path = crate::project::root().join("scenarios/galo-2011/network-coordinates.toml");
-    let scenario = parse("galo-2011/test", "test.toml", &std::fs::read_to_string(path).unwrap(), &Registry::builtin()).unwrap();
-    let Subject::Views(views) = &scenario.subject else { panic!("a wall") };
-    let (truth, count) = y0(views, |_, at| at);
-    assert!((truth + 0.06).abs() < 1e-9, "{truth}");
-    let misread = (0..2 * count).map(|coordinate| {
-        let moved = |index: usize, at: PixelPoint| match (index == coordinate / 2, coordinate % 2) {
-            (false, _) => at,
-            (true, 0) => PixelPoint::new(at.x + 1.0, at.y),
-            (true, _) => PixelPoint::new(at.x, at.y + 1.0),
-        };
-        (y0(views, moved).0 - truth).abs()
-    });
-    let most = misread.fold(0.0, f64::max);
-    assert!(most > 0.007 && most < 0.0105, "mm of y0 for a pixel: {most}");
-    let origin = y0(views, |_, at| PixelPoint::new(at.x, at.y - 34.9)).0 - truth;
-    assert!((origin - 0.164).abs() < 1e-3, "{origin}");
 }

@@ -12,9 +12,10 @@ pub fn root() -> PathBuf {
 const NETWORKS: &str = "galo-2011/network";
 
 /// Scenarios whose run takes long, by what their names begin with: only tests of their own copy them.
-const LONG: [&str; 10] = [
+const LONG: [&str; 11] = [
     "atlas/",
     "canon-t3/",
+    "league/",
     NETWORKS,
     "operators/",
     "sweeps/",

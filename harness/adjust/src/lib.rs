@@ -6,9 +6,9 @@
 //! [`Datum::Inner`].
 //!
 //! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
-//! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::significance`] of parameters,
-//! [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`], [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart,
-//! [`snoop`] looks for blunders, [`adjust_robustly`] holds them back.
+//! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::quality`] (both from one inverse),
+//! [`Solution::significance`] of parameters, [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`],
+//! [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders, [`adjust_robustly`] holds them back.
 
 pub mod approximate;
 mod datum;

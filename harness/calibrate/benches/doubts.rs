@@ -1,5 +1,9 @@
-//! How often sound calibrations are doubted, and planted mistakes named: a table of as many draws of each kind as the first argument says, 1000 and 100 without one.
+//! How often sound calibrations are doubted, planted mistakes named, gross errors left out and broken assumptions said: tables of as many draws of each kind as the first
+//! argument says (a tenth of that but of sound ones), 1000 and 100 without one.
 
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../tests/surveys/broken.rs"]
+mod broken;
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/surveys/network.rs"]
 mod network;
@@ -7,6 +11,8 @@ mod network;
 #[path = "../tests/surveys/planted.rs"]
 mod planted;
 
+use broken::{BROKEN, GROSS, Given, SNOOPED, STRAINED, given, with};
+use calibench_calibrate::GrossErrors;
 use planted::{MISTAKEN, SOUND, examined, suspects};
 use rayon::prelude::*;
 
@@ -32,4 +38,27 @@ fn main() {
         let first = (0..mistaken).into_par_iter().filter(|seed| suspects(&draw(*seed)).first().is_some_and(|first| first.kind == kind));
         println!("| {what} | {} |", first.count());
     }
+    println!("\n| {mistaken} draws of each | asked for | px off, median | left out, mean | refused | doubted | wrong without a word |");
+    println!("|---|---|--:|--:|--:|--:|--:|");
+    for (what, draw) in GROSS.into_iter().chain(BROKEN).chain(STRAINED) {
+        for (name, gross) in [("plain", GrossErrors::Kept), ("default", GrossErrors::Sought), ("snoop", SNOOPED)] {
+            let of_seed = |seed| {
+                let (input, truth) = draw(seed);
+                given(&with(&input, gross), &truth).ok()
+            };
+            let found: Vec<Given> = (0..mistaken).into_par_iter().filter_map(of_seed).collect();
+            println!("| {what} | {name} | {} |", row(&found, mistaken as usize));
+        }
+    }
+}
+
+/// The rest of a row.
+fn row(found: &[Given], of: usize) -> String {
+    let mut off: Vec<f64> = found.iter().map(|given| given.off_px).collect();
+    off.sort_by(f64::total_cmp);
+    let median = off.get(off.len() / 2).copied().unwrap_or(f64::INFINITY);
+    let left_out = found.iter().map(|given| given.left_out).sum::<usize>() as f64 / found.len().max(1) as f64;
+    let count = |is: fn(&Given) -> bool| found.iter().filter(|given| is(given)).count();
+    let [doubted, silent] = [count(|given| !given.doubts.is_empty()), count(Given::is_silent)];
+    format!("{median:.3} | {left_out:.1} | {} | {doubted} | {silent}", of - found.len())
 }

@@ -1,14 +1,17 @@
 //! The adjustment of a network, and its quality.
 
+use std::sync::OnceLock;
+
 use calibench_adjust::{
-    Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, adjust_robustly, snoop,
+    Covariances, Found, Network, Options, Reliability, Significance, Solution, Status, Test, Variance, adjust, adjust_robustly, snoop,
 };
 use calibench_model::NamedCamera;
 use calibench_model::camera::Camera;
 use calibench_model::named_camera::ParameterCovariance;
 
+use crate::doubt::Verdicts;
 use crate::ended::{ITERATIONS, ended};
-use crate::{CalibrationError, Checked, Compared, Doubt, OverFrame, Prepared, Resampled};
+use crate::{CalibrationError, Checked, Compared, Doubt, GrossErrors, OverFrame, Prepared, Resampled};
 
 /// A calibration and its quality.
 #[derive(Clone, Debug)]
@@ -39,6 +42,10 @@ pub struct Calibration<'n> {
     pub uncertain: Vec<Doubt>,
     /// What cannot be as it is said to be, whatever the model; empty until [`Calibration::examine`].
     pub impossible: Vec<Doubt>,
+    /// Gross errors were sought, and what does not fit is kept, since it is not wrong for itself.
+    pub(crate) is_off_together: bool,
+    /// What checks that adjust again found, once they were made.
+    pub(crate) allowed: OnceLock<Verdicts>,
 }
 
 impl Prepared {
@@ -48,10 +55,12 @@ impl Prepared {
     /// What the network does not determine, by name; what else [`adjust`] refuses.
     pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
         let (solution, found, huber) = self.solution()?;
-        let test = self.test();
-        let checked = solution.counts().redundancy() > 0;
-        let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
-        let reliability = if checked { Some(solution.reliability(test)?) } else { None };
+        let (covariances, reliability) = if solution.counts().redundancy() > 0 {
+            let (covariances, reliability) = solution.quality(Variance::Estimated, self.test())?;
+            (covariances, Some(reliability))
+        } else {
+            (solution.covariances(Variance::Apriori)?, None)
+        };
         Ok(Calibration {
             prepared: self,
             solution,
@@ -66,22 +75,25 @@ impl Prepared {
             rims: Vec::new(),
             uncertain: Vec::new(),
             impossible: Vec::new(),
+            is_off_together: false,
+            allowed: OnceLock::new(),
         })
     }
 
     /// The solution alone, with what was rejected and the bound of Huber's weights.
     pub(crate) fn solution(&self) -> Result<(Solution<'_>, Vec<Found>, Option<f64>), CalibrationError> {
         let options = Options { most_iterations: ITERATIONS, ..Options::default() };
-        Ok(match self.settings.huber {
-            Some(bound) => {
+        Ok(match self.settings.gross {
+            GrossErrors::Weighted(bound) => {
                 let (solution, scaled) = adjust_robustly(&self.network, &options, bound)?;
                 (solution, Vec::new(), Some(scaled))
             }
-            None if self.settings.snoop => {
-                let (solution, found) = snoop(&self.network, &options, Snooping { test: self.test(), ..Snooping::default() })?;
+            GrossErrors::Rejected(risk) => {
+                let snooping = risk.snooping(self.network.observations.len(), self.settings.tested());
+                let (solution, found) = snoop(&self.network, &options, snooping)?;
                 (solution, found, None)
             }
-            None => (adjust(&self.network, &options)?, Vec::new(), None),
+            GrossErrors::Sought | GrossErrors::Kept => (adjust(&self.network, &options)?, Vec::new(), None),
         })
     }
 
@@ -133,6 +145,11 @@ impl Calibration<'_> {
     /// The camera of an image.
     pub fn owner(&self, image: usize) -> usize {
         self.prepared.network.images[image].camera
+    }
+
+    /// Tests of the unknown parameters against zero; none without redundancy.
+    pub fn significance(&self) -> Vec<Significance> {
+        self.solution.significance(&self.covariances).unwrap_or_default()
     }
 
     /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`.

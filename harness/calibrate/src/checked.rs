@@ -27,6 +27,29 @@ pub enum Verdict {
     Doubt(Finding, String),
 }
 
+impl Verdict {
+    /// Whether it is a doubt.
+    pub(crate) fn is_doubt(&self) -> bool {
+        matches!(self, Self::Doubt(..))
+    }
+
+    /// Whatever was found is no structure.
+    pub(crate) fn sound(self) -> Self {
+        match self {
+            Self::Doubt(finding, _) | Self::Slight(finding, _) => Self::Sound(finding),
+            other => other,
+        }
+    }
+
+    /// Whatever was found counts.
+    pub(crate) fn doubted(self) -> Self {
+        match self {
+            Self::Slight(finding, cause) => Self::Doubt(finding, cause),
+            other => other,
+        }
+    }
+}
+
 impl Finding {
     /// Whether a structure that is no chance moves the camera.
     pub(crate) fn weighed(self, cause: String) -> Verdict {

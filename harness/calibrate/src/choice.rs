@@ -4,7 +4,7 @@ use calibench_diagnostics::nearest;
 use calibench_model::camera::ImageSize;
 use thiserror::Error;
 
-use crate::{BoardShape, CalibrationError, Optics, Settings, parameters};
+use crate::{BoardShape, CalibrationError, GrossErrors, Optics, Settings, parameters};
 
 /// Photographs from which a camera is calibrated by themselves, at least: a half of those that judge has as many.
 pub const HALF: usize = 3;
@@ -88,9 +88,9 @@ impl ModelChoice {
         Ok(found)
     }
 
-    /// How it is calibrated.
+    /// How it is calibrated where others are compared with it: from all points, whatever they are.
     pub fn settings(&self, size: ImageSize, pitch_um: Option<f64>) -> Settings {
-        Settings { shape: self.shape, ..Settings::new(vec![self.optics(size, pitch_um)]) }
+        Settings { shape: self.shape, gross: GrossErrors::Kept, ..Settings::new(vec![self.optics(size, pitch_um)]) }
     }
 
     fn optics(&self, size: ImageSize, pitch_um: Option<f64>) -> Optics {

@@ -124,7 +124,7 @@ pub fn few(names: &[String]) -> String {
 
 fn hint(error: &AdjustError) -> &'static str {
     match error {
-        AdjustError::NotConverged { .. } => "; where image points are in gross error this happens: --snoop looks for them",
+        AdjustError::NotConverged { .. } => "; where many image points are in gross error this happens",
         _ => "",
     }
 }

@@ -1,6 +1,7 @@
 //! What is known of a camera, what is wanted, and which images are its own.
 
 use calibench_model::camera::{Camera, ImageSize};
+use calibench_model::views::photo_of;
 use glob::Pattern;
 
 use super::{CalibrationError, Prior};
@@ -37,7 +38,8 @@ impl Optics {
 
     /// Whether it claims an image, by its name.
     pub fn claims(&self, image: &str) -> bool {
-        self.images.is_empty() || self.images.iter().any(|pattern| pattern.matches(image))
+        let matches = |name: &str| self.images.iter().any(|pattern| pattern.matches(name));
+        self.images.is_empty() || matches(image) || photo_of(image).is_some_and(matches)
     }
 }
 

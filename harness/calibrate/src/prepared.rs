@@ -1,11 +1,17 @@
 //! From points and control to a network with start values.
 
+use std::sync::Arc;
+
 use calibench_adjust::Network;
 use calibench_model::camera::Camera;
 use calibench_model::{ControlRow, LostRows, Points};
 
 use crate::against_gross::{self, Found};
-use crate::{BoardShape, CalibrationError, DatumChoice, Eccentricity, LeftOut, Rival, Settings, Shape, Survey, network, optics, shape};
+use crate::search::is_of_start;
+use crate::{
+    BoardShape, CalibrationError, DatumChoice, Eccentricity, GrossErrors, LeftOut, Risk, Rival, Settings, Shape, Survey, network, optics,
+    shape,
+};
 
 /// A network with its start values.
 #[derive(Clone, Debug)]
@@ -13,7 +19,7 @@ pub struct Prepared {
     /// How it was asked for.
     pub settings: Settings,
     /// Who measured what.
-    pub survey: Survey,
+    pub survey: Arc<Survey>,
     /// Where the interior orientation of each camera started.
     pub origins: Vec<String>,
     /// The cameras of the usual start, without what the search for a lower minimum knows: parameters that a compared set does not solve for keep their values.
@@ -42,16 +48,25 @@ pub struct Prepared {
 /// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets, the shape of a board where there is
 /// none.
 pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
-    let settings = &with_shape(settings)?;
-    let survey = Survey::new(points, control)?;
+    let settings = with_shape(settings)?;
+    let survey = Arc::new(Survey::new(points, control)?);
+    let against = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..settings.clone() };
+    match prepared(&survey, &settings) {
+        // Gross errors may be why.
+        Err(error) if settings.gross == GrossErrors::Sought && is_of_start(&error) => prepared(&survey, &against).map_err(|_| error),
+        found => found,
+    }
+}
+
+fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, CalibrationError> {
     let owners = optics::owners(&settings.cameras, &survey.images)?;
-    let Found { plain, starts, rivals } = against_gross::found(&survey, &owners, settings)?;
-    let (mut network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
+    let Found { plain, starts, rivals } = against_gross::found(survey, &owners, settings)?;
+    let (mut network, sights, left_out) = network::network(survey, &owners, &starts, settings)?;
     let shape = shape::shape(&mut network, settings)?;
     let (plain, origins) = (plain.unwrap_or(starts.cameras), starts.origins);
     Ok(Prepared {
         settings: settings.clone(),
-        survey,
+        survey: Arc::clone(survey),
         plain,
         origins,
         rivals,
@@ -63,6 +78,15 @@ pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> R
         left_out,
         unmeasured: LostRows::default(),
     })
+}
+
+impl Prepared {
+    /// The same observations, of which those in gross error are to be left out, and start values against them; `None` where there are none.
+    pub(crate) fn without_gross_errors(&self) -> Option<Self> {
+        let settings = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..self.settings.clone() };
+        let found = prepared(&self.survey, &settings).ok()?;
+        Some(Self { unmeasured: self.unmeasured.clone(), ..found })
+    }
 }
 
 /// `settings` with the datum that a board's shape asks for: every corner is free in a free network, where the shape is no question of its own.

@@ -1,6 +1,6 @@
 //! Several sets of parameters for the same observations: which of them the network supports.
 
-use calibench_adjust::{Comparison, Interior, Network, Options, Solution, Status, adjust, compare};
+use calibench_adjust::{Comparison, Interior, Network, Options, Solution, Status, Variance, adjust, compare};
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
 
@@ -63,7 +63,8 @@ fn result(solution: &Solution<'_>, calibration: &Calibration<'_>) -> Result<SetR
     // The variance factor is an unknown of the distribution too.
     let k = u + 1.0;
     let correction = if n > k + 1.0 { 2.0 * k * (k + 1.0) / (n - k - 1.0) } else { f64::INFINITY };
-    let tests = solution.significance().map_err(|error| error.to_string())?;
+    let covariances = solution.covariances(Variance::Estimated).map_err(|error| error.to_string())?;
+    let tests = solution.significance(&covariances).map_err(|error| error.to_string())?;
     Ok(SetResult {
         sigma0_px: sigma0 * calibration.prepared.settings.sigma(),
         counts: (counts.observations(), counts.unknowns),

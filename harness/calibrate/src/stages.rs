@@ -32,7 +32,7 @@ fn by_stages(survey: &Survey, owners: &[usize], starts: &Starts, settings: &Sett
     let cameras = first.cameras.iter().zip(&starts.cameras).map(|(optics, rough)| model::camera(rough, optics));
     let started = Starts { cameras: cameras.collect::<Result<_, _>>().ok()?, ..starts.clone() };
     let (network, ..) = network::network(survey, owners, &started, &first).ok()?;
-    let options = Options { huber: settings.start_huber(), most_iterations: ITERATIONS, ..Options::default() };
+    let options = Options { huber: settings.gross.of_start(), most_iterations: ITERATIONS, ..Options::default() };
     let solution = adjust(&network, &options).ok()?;
     let (mut cameras, mut origins) = (solution.cameras().to_vec(), starts.origins.clone());
     for (index, simple) in simpler.iter().enumerate().filter_map(|(index, simple)| Some((index, simple.as_ref()?))) {

@@ -226,7 +226,7 @@ pub fn robust_pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, Stri
 
 /// How poses are found: where gross errors are looked for, against them in the first place.
 pub(super) fn pose_finder(settings: &Settings) -> PoseFinder {
-    if settings.start_huber().is_some() { robust_pose_of } else { pose_of }
+    if settings.gross.of_start().is_some() { robust_pose_of } else { pose_of }
 }
 
 pub(super) type PoseFinder = fn(&Camera, &[Control]) -> Result<Pose, String>;

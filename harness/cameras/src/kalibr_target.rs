@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_model::boards::{AprilGrid, Board, Chessboard, Circles, Dictionary};
+use calibench_model::boards::{AprilGrid, Board, Chessboard, Circles, Dictionary, Marks};
 
 use super::CameraFileError;
 use super::formats::yaml;
@@ -93,6 +93,7 @@ fn circlegrid(root: &Entry) -> Result<Board, CameraFileError> {
         diameter: 0.5 * spacing,
         hole: None,
         asymmetric,
+        marks: Marks::default(),
     }))
 }
 
@@ -125,6 +126,7 @@ pub fn kalibr_target(board: &Board, metres: f64) -> Result<String, &'static str>
             Ok(format!("target_type: 'aprilgrid'\ntagCols: {columns}\ntagRows: {rows}\ntagSize: {side}\ntagSpacing: {spacing}\n"))
         }
         Board::Circles(Circles { hole: Some(_), .. }) => Err("its circles are discs, not rings"),
+        Board::Circles(circles) if !circles.marks.is_empty() => Err("its circles are all alike"),
         Board::Circles(Circles { columns, rows, spacing, asymmetric, .. }) => {
             let (spacing, asymmetric) = (length(*spacing), if *asymmetric { "True" } else { "False" });
             Ok(format!(
@@ -132,6 +134,7 @@ pub fn kalibr_target(board: &Board, metres: f64) -> Result<String, &'static str>
             ))
         }
         Board::Charuco(_) => Err("it knows no ChArUco"),
+        Board::GridBoard(_) => Err("it knows no GridBoard"),
         Board::Rings(_) => Err("it knows no ring codes"),
         Board::Puzzle(_) => Err("it knows no PuzzleBoard"),
         Board::Dotted(_) => Err("it knows no dots in a chessboard"),
@@ -173,11 +176,12 @@ mod tests {
     /// What is written is read as the board that it was, and what Kalibr would see as another board is refused.
     #[test]
     fn every_kind_of_board_is_written_or_refused_with_a_reason() {
-        for (kind, _, example) in calibench_model::boards::KINDS {
+        for (kind, example) in calibench_model::boards::examples() {
             let board: Board = example.parse().unwrap();
             match kalibr_target(&board, 1.0) {
                 Ok(written) => assert_eq!(parse(&written), Ok(board), "{kind}: {written}"),
-                Err(why) => assert!(["charuco", "rings", "puzzle", "dotted"].contains(&kind), "{kind}: {why}"),
+                Err("its circles are all alike") => assert!(example.contains('@'), "{example}"),
+                Err(why) => assert!(["charuco", "gridboard", "rings", "puzzle", "dotted"].contains(&kind), "{kind}: {why}"),
             }
         }
         let refused = |word: &str, why: &str| {
@@ -188,6 +192,7 @@ mod tests {
         refused("aprilgrid:6x6:88:0.3:7", "tag 0");
         refused("aprilgrid:6x6:88:0.3:plain", "small squares");
         refused("charuco:8x5:30:21:DICT_4X4_50", "ChArUco");
+        refused("gridboard:5x7:40:10:DICT_6X6_250", "GridBoard");
         refused("rings:12:6x5:50:8", "ring codes");
         refused("puzzle:23x16:30:50,100", "PuzzleBoard");
         refused("dotted:9x6:25", "dots");

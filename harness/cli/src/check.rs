@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_files::OutputFile;
 use calibench_gate::{
-    Access, Baselines, CEILINGS, Ceilings, Cells, Check as Gate, FigureSums, ImageSums, Kept, Results, Rules, Table, json, junit,
+    Access, Baselines, CEILINGS, Ceilings, Cells, Check as Gate, FigureSums, Finding, ImageSums, Kept, Results, Rules, Table, json, junit,
     not_tested, recorded, render,
 };
 use calibench_scenario::Scenario;
@@ -78,7 +78,7 @@ impl Check {
         let tables: Vec<&Table> = all.iter().filter_map(Results::table).collect();
         gate.ceilings(&ceilings, &tables);
         let of = |table: &&Table| table.methods().map(|(label, _)| (table.scenario.clone(), label.to_string())).collect::<Vec<_>>();
-        self.report(gate, &tables.iter().flat_map(of).collect::<Vec<_>>(), &left, junit.as_ref())
+        self.report(gate, &tables.iter().flat_map(of).collect::<Vec<_>>(), &left, (junit.as_ref(), &wanted))
     }
 
     /// Compares with records instead of baselines.
@@ -95,7 +95,7 @@ impl Check {
         let stored = self.reusing.open(context)?;
         let (wanted, left) = self.wanted(context, &Keep::new(context)?)?;
         gated(context, &wanted, &mut Source { records: self.records.clone(), kept: None, each: &mut each, stored: &stored })?;
-        self.report(gate, &compared, &left, junit)
+        self.report(gate, &compared, &left, (junit, &wanted))
     }
 
     /// The scenarios that are compared, and the names of those that are left to a check with --nightly. What published tables stand on is never left: their verdicts
@@ -115,11 +115,12 @@ impl Check {
         gate: Gate,
         compared: &[(String, String)],
         left: &[String],
-        findings_file: Option<&OutputFile>,
+        (findings_file, wanted): (Option<&OutputFile>, &[Scenario]),
     ) -> Result<(), Failure> {
         let rules = Rules { strict: self.strict, locked: self.locked };
         let tally = gate.tally();
-        let findings = gate.conclude();
+        let mut findings = gate.conclude();
+        name_sets(&mut findings, wanted);
         if let Some(file) = findings_file {
             let text = junit(&findings, compared, rules);
             file.write(|file| file.write_all(text.as_bytes()))?;
@@ -132,6 +133,19 @@ impl Check {
             return Err(Failure::input("nothing was compared: none of the scenarios has a blessed method that could be run"));
         }
         Ok(())
+    }
+}
+
+/// Calls sets of figures as their scenarios do, and not by their numbers.
+fn name_sets(findings: &mut [Finding], scenarios: &[Scenario]) {
+    for finding in findings {
+        let scenario = scenarios.iter().find(|scenario| finding.scenario.split('@').next() == Some(&scenario.name));
+        let (Some(scenario), Some(target)) = (scenario, &mut finding.target) else { continue };
+        let Some((number, rest)) = target.strip_prefix("set ").and_then(|text| text.split_once(' ')) else { continue };
+        let name = number.parse::<usize>().ok().and_then(|number| scenario.subject.sets().into_iter().nth(number.wrapping_sub(1)));
+        if let Some(name) = name {
+            *target = format!("{name} {rest}");
+        }
     }
 }
 

@@ -11,6 +11,7 @@ use calibench_photographs::Finder;
 use calibench_plugins::Launcher;
 use calibench_project::{Project, Toolbox};
 use calibench_report::Places;
+use calibench_run::Tools;
 use calibench_scenario::Scenario;
 use calibench_scenario::catalogue::Catalogue;
 
@@ -55,6 +56,10 @@ impl Context<'_> {
 
     pub fn registry(&self) -> Result<&Registry, Failure> {
         self.project.registry().map_err(project_failure)
+    }
+
+    pub fn tools(&self) -> Result<Tools<'_>, Failure> {
+        self.project.tools().map_err(project_failure)
     }
 
     pub fn launcher(&self) -> Result<Launcher, Failure> {

@@ -7,9 +7,10 @@ use calibench_exchange::write_points;
 use calibench_measure::Board as Counts;
 use calibench_model::boards::Board;
 use calibench_model::{PointRef, PointRow};
-use calibench_photographs::Chessboard;
 use calibench_photographs::coded::{Coded, recognise_coded};
 use calibench_photographs::names::once;
+use calibench_photographs::unknown::{Shown, identify, shown, with_lengths};
+use calibench_photographs::{Chessboard, Identified, Reader};
 use calibench_recognise::{Classifier, NotRecognised, Recogniser};
 use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject, ViewsSubject};
@@ -19,9 +20,12 @@ use super::context::{Context, finder};
 use super::output;
 use super::photos::AsRead;
 use super::progress::Progress;
-use crate::board::board_of;
-use crate::deliver::deliver;
+use crate::board::{Asked, board_or_unknown};
+use crate::deliver::{deliver, print};
 use crate::failure::Failure;
+
+/// So many photographs in which a board was not found are asked what they show.
+const LOOKED_AT: usize = 3;
 
 #[derive(Args)]
 pub struct Detect {
@@ -31,9 +35,12 @@ pub struct Detect {
     /// The chessboard's inner corners, as in 9x6
     #[arg(long, value_name = "COLUMNSxROWS", required_unless_present_any = ["board", "testfield"], conflicts_with_all = ["board", "testfield"])]
     chessboard: Option<Counts>,
-    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml)
-    #[arg(long, value_name = "BOARD", value_parser = board_of, conflicts_with = "testfield")]
-    board: Option<Board>,
+    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, gridboard:5x7:40:10:DICT_6X6_250, circles:7x5:20, circles:10x10:20:10:20@r10c1, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml); or `unknown`: what board is there, and by which words is it found?
+    #[arg(long, value_name = "BOARD", value_parser = board_or_unknown, conflicts_with = "testfield")]
+    board: Option<Asked>,
+    /// Each of several such boards in a photograph, from the left: its points stand under the view PHOTO#1, PHOTO#2, ..., which `measure` and `calibrate` take as an image with a pose of its own
+    #[arg(long, conflicts_with = "testfield")]
+    all: bool,
     /// The coded field that a scenario describes, by its name or TOML file: the targets of its whole squares in view
     #[arg(long, value_name = "SCENARIO")]
     testfield: Option<String>,
@@ -59,35 +66,68 @@ enum Shapes {
 
 impl Detect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let chessboard = self.chessboard.map(|board| Board::from(Chessboard { board, side: 1.0 }));
+        let chessboard = self.chessboard.map(|board| Asked::Board(Board::from(Chessboard { board, side: 1.0 })));
         match (&self.testfield, self.board.or(chessboard)) {
             (Some(name), _) => self.field(context, name),
-            (None, Some(board)) => self.board(context, board),
+            (None, Some(Asked::Board(board))) => self.board(context, board),
+            (None, Some(Asked::Unknown)) => self.unknown(context),
             (None, None) => Err(Failure::input("expected --board, --chessboard or --testfield")),
         }
     }
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &inputs_of(&self.photos))?;
-        let finder = finder(board)?;
+        let finder = finder(board)?.of_each(self.all);
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
-        let found = finder.find_all(&self.read.reader(&self.photos)?, &|| progress.step())?;
+        let reader = self.read.reader(&self.photos)?;
+        let found = finder.find_all(&reader, &|| progress.step())?;
         let seen = found.iter().filter(|sighting| !sighting.rows.is_empty()).count();
-        progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
+        let light = found.iter().filter(|sighting| sighting.light).count();
+        let lights = if light > 0 { format!(", its circles light on dark in {light}") } else { String::new() };
+        let boards: usize = found.iter().map(|sighting| sighting.boards.len()).sum();
+        let several = if self.all { format!(", {boards} times") } else { String::new() };
+        progress.finish(&format!("the board was found in {seen} of {} photographs{several}{lights}", found.len()));
         let mut doubtful = false;
         for (path, sighting) in self.photos.iter().zip(&found) {
             sighting.why.iter().for_each(|why| say!("{}: {why}", path.display()));
             sighting.doubts.iter().for_each(|doubt| say!("{}: in doubt: {doubt}", path.display()));
             doubtful |= !sighting.doubts.is_empty();
         }
+        say_several(self.all, found.iter().any(|sighting| !sighting.boards.is_empty()));
         if seen == 0 {
-            return Err(Failure::input(
-                "no board was found; expected one as it was described (of a chessboard all inner corners visible, counted as COLUMNSxROWS)",
-            ));
+            return Err(Failure::input(format!(
+                "no board was found; expected one as it was described (of a chessboard all inner corners visible, counted as COLUMNSxROWS){}",
+                instead(&reader, &board)?
+            )));
         }
         deliver(output.as_ref(), |file| write_points(file, found.iter().flat_map(|sighting| &sighting.rows).map(PointRef::from)))?;
         if doubtful { Err(Failure::Doubt) } else { Ok(()) }
+    }
+
+    /// What board is there, and by which words it is found.
+    fn unknown(&self, context: &Context<'_>) -> Result<(), Failure> {
+        if self.output.is_some() || self.all {
+            return Err(Failure::input(
+                "--board unknown names the board and has no points: leave -o and --all out, then ask for the board by its words",
+            ));
+        }
+        let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
+        let Shown { each, best, others } = shown(&self.read.reader(&self.photos)?, &|| progress.step())?;
+        let lines = self.photos.iter().zip(&each).map(|(path, found)| {
+            let words = found.as_ref().map_or_else(|| "no board that is known".to_owned(), in_words);
+            format!("{}: {words}\n", path.display())
+        });
+        print(&lines.collect::<String>())?;
+        let Some((board, photos, points)) = best else {
+            return Err(Failure::input("no board that is known was found; markers by themselves and ring codes are none"));
+        };
+        progress.finish(&format!("{board} is found in {photos} of {} photographs, {points} points", self.photos.len()));
+        print(&format!("--board {board}\n"))?;
+        say!("its lengths are in {}: put your own in their place", unit(&board));
+        let Some(other) = others.first() else { return Ok(()) };
+        say!("in doubt: {} and {} more show another board", self.photos[*other].display(), others.len() - 1);
+        Err(Failure::Doubt)
     }
 
     fn field(&self, context: &Context<'_>, name: &str) -> Result<(), Failure> {
@@ -118,6 +158,41 @@ impl Detect {
             )));
         }
         deliver(output.as_ref(), |file| write_points(file, rows.into_iter().map(PointRef::from)))
+    }
+}
+
+/// What a photograph shows, in words.
+fn in_words(found: &Identified) -> String {
+    match found {
+        Identified::Board { board, points, .. } => format!("{}; {points} points by --board {board}", found.words()),
+        Identified::Markers { .. } => found.words(),
+    }
+}
+
+/// What the lengths of a board are counted in of which none is known.
+const fn unit(board: &Board) -> &'static str {
+    match board {
+        Board::Circles(_) | Board::Rings(_) => "distances of circles (whose diameter is taken for half of it)",
+        Board::AprilGrid(_) | Board::GridBoard(_) => "sides of a marker",
+        _ => "sides of a square",
+    }
+}
+
+/// What the first photographs show in place of a board that is in none of them.
+fn instead(reader: &Reader, asked: &Board) -> Result<String, Failure> {
+    for path in reader.photos().iter().take(LOOKED_AT) {
+        if let Some(found @ Identified::Board { board, .. }) = &identify(&reader.read(path)?) {
+            let board = with_lengths(*board, asked);
+            return Ok(format!(". {} shows {}: try --board {board}", path.display(), found.words()));
+        }
+    }
+    Ok(String::new())
+}
+
+/// Says how each of several boards is measured, where several are seen and one was asked for.
+fn say_several(all: bool, are_seen: bool) {
+    if are_seen && !all {
+        say!("several boards are seen in one photograph: --all takes each of them, as a view with a pose of its own");
     }
 }
 

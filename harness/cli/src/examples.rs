@@ -36,9 +36,22 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench check --strict --locked --junit gate.xml", "in CI: also on what changed or is not blessed"),
         ],
     ),
-    ("init", &[("calibench init gate", "a folder with one scenario, its baseline and the schema for editors")]),
+    (
+        "init",
+        &[
+            ("calibench init gate", "a folder with one scenario, its baseline and the schema for editors"),
+            ("calibench init mine --calibrator", "the same for a calibration system, with a program to put it in"),
+        ],
+    ),
     ("bless", &[("calibench bless corners/noise", "lists what gets worse, asks, and writes the baseline")]),
     ("gate-power", &[("calibench gate-power --divisions 200", "the page of docs/gate-power.md, in short")]),
+    (
+        "league",
+        &[
+            ("calibench league --plugins examples/calibrators --minutes 60", "every calibrator that can run here, for an hour"),
+            ("calibench league league/good --system ours --fresh", "one cell again"),
+        ],
+    ),
     ("speed", &[("calibench speed -m forstner:window=15 -m lsm -o speeds.csv", "points a second of two methods")]),
     (
         "measure",
@@ -54,6 +67,8 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "detect",
         &[
             ("calibench detect a.jpg b.jpg --chessboard 9x6 -o approx.csv", "a chessboard's corners"),
+            ("calibench detect a.jpg b.jpg --board unknown", "what board is this, and by which words is it found"),
+            ("calibench detect room.jpg --board gridboard:5x7:40:10:DICT_6X6_250 --all -o approx.csv", "each of several boards"),
             ("calibench detect a.jpg --testfield testfields/coded -o approx.csv", "a coded field"),
         ],
     ),

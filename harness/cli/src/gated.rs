@@ -15,6 +15,7 @@ use calibench_run::{Order, Plan};
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use super::context::Context;
+use super::notes::say_absent_calibrators;
 use super::progress::Progress;
 use super::stored::{Stored, is_current};
 use crate::failure::{Failure, project_failure};
@@ -110,6 +111,9 @@ fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>, tall
         images: beside.as_ref().and_then(|beside| kept(&beside.images)),
     };
     let missing = plan.missing();
+    if source.records.is_none() {
+        say_absent_calibrators(&plan);
+    }
     if let Some(why) = missing.filter(|_| source.records.is_none()) {
         return Ok(results(Measured::NotCompared(format!("unavailable: {why}")), None));
     }
@@ -202,7 +206,7 @@ fn done(tally: &Tally) -> &'static str {
 
 fn plan<'a>(context: &'a Context<'_>, scenario: &'a Scenario, reuse: Option<Reuse<'a>>) -> Result<Plan<'a>, Failure> {
     // The gate compares errors with errors.
-    Ok(Plan { bounds: false, reuse, ..Plan::new(scenario, context.toolbox.tools(), context.data()?) })
+    Ok(Plan { bounds: false, reuse, ..Plan::new(scenario, context.tools()?, context.data()?) })
 }
 
 fn empty<T: Kept>(scenario: &Scenario, text: &str, seed: u64) -> Cells<T> {
@@ -235,7 +239,7 @@ fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path, reuse: O
         progress.finish(reuse.map_or("measured", |reuse| done(reuse.tally)));
         return Ok(());
     };
-    let (registry, tools) = (context.registry()?, context.toolbox.tools());
+    let (registry, tools) = (context.registry()?, context.tools()?);
     let order = Order { scenario, methods: &[], seed: None, trials: None, tools, data: context.data()?, reuse, registry, stop: None };
     store::run_sweep(&output, &SweepPlan { order: &order, sweep }, &revision, &|| ())?;
     Ok(())

@@ -27,6 +27,7 @@ mod inputs;
 mod intersect;
 mod judge;
 mod lanes;
+mod league;
 mod list;
 mod manual;
 mod measure;
@@ -127,13 +128,15 @@ enum Command {
     /// Calibrate a camera from measured points and control, or from photographs of a chessboard
     Calibrate(Box<calibrate::Calibrate>),
     /// Say which operator and which camera model to trust on photographs of a chessboard, and how far; without truth
-    Judge(judge::Judge),
+    Judge(Box<judge::Judge>),
     /// Orient images from control points; the camera is known
     Resect(resect::Resect),
     /// Intersect object points from oriented images; camera and poses are known
     Intersect(intersect::Intersect),
     /// Orient two images relatively to each other, and intersect the model that they make; the cameras are known
     Orient(orient::Orient),
+    /// Ask calibration systems for cameras, class by class, and keep their answers in reference/league: what is up to date is left
+    League(league::League),
     /// Convert a camera file to another convention
     Convert(convert::Convert),
     /// Show what is in a camera file: parameters, field of view, distortion, fold-over
@@ -218,6 +221,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Bless(bless) => bless.run(&context),
         Command::GatePower(power) => power.run(&context),
         Command::Speed(speed) => speed.run(&context),
+        Command::League(league) => league.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
         Command::Point(point) => point.run(&context),

@@ -21,6 +21,8 @@ pub enum What {
     Scenarios,
     /// Methods and their parameters
     Methods,
+    /// Calibration systems: ours, and those that files of plug-ins declare
+    Calibrators,
     /// Conventions of cameras, and what of them is verified
     Conventions,
     /// Formats of camera files, what of them is verified, and what `convert --to` can be told
@@ -35,6 +37,7 @@ pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
     print(&match what {
         What::Scenarios => scenarios(context)?,
         What::Methods => methods(context)?,
+        What::Calibrators => calibrators(context)?,
         What::Conventions => conventions(),
         What::Formats => formats(),
         What::Tables => tables(context)?,
@@ -71,6 +74,22 @@ fn methods(context: &Context<'_>) -> Result<String, Failure> {
         if let Build::Unavailable(why) = method.build {
             let _ = writeln!(text, "    unavailable: {why}");
         }
+    }
+    Ok(text)
+}
+
+fn calibrators(context: &Context<'_>) -> Result<String, Failure> {
+    let mut text = String::new();
+    for listed in context.tools()?.calibrators {
+        let version = listed.calibrator.version();
+        let version = version.map_or_else(|why| format!("unavailable: {why}"), |version| format!("version {version}"));
+        let start = if listed.start { "; is given a start" } else { "" };
+        let (models, source) = (listed.models.join(", "), &listed.source);
+        let _ = writeln!(
+            text,
+            "{} ({} {version})\n    {}\n    models: {models}{start}\n    source: {source}",
+            listed.name, listed.system, listed.about
+        );
     }
     Ok(text)
 }

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use calibench_calibrators::{check as check_calibrator, programs};
 use calibench_measure::{Configured, Registry};
-use calibench_plugins::{Declaration, Declared, Finding, Launcher, Recording, Starts, check, method, parse};
-use calibench_project::ProjectError;
+use calibench_plugins::{CalibratorProgram, Declaration, Declared, Finding, Launcher, Recording, Starts, check, method, parse};
+use calibench_project::{ProjectError, answered_camera};
 use calibench_run::origin::{DIRECTIONS, Origin, check_origins, origins};
 use clap::Subcommand;
 
@@ -38,9 +39,23 @@ fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
         failed |= match declared {
             Declared::Program(declaration) => program_fails(declaration, &folder, &launcher)?,
             Declared::Recording(recording) => recording_fails(recording, &folder)?,
+            Declared::Calibrator(declaration) => calibrator_fails(CalibratorProgram::new(*declaration, &folder, &launcher))?,
         };
     }
     if failed { Err(Failure::Gate) } else { Ok(()) }
+}
+
+/// Tries a calibration system and says what it does; whether anything fails.
+fn calibrator_fails(program: CalibratorProgram) -> Result<bool, Failure> {
+    let mut failed = false;
+    for listed in programs(vec![program], answered_camera) {
+        print(&format!("{} {}\n", listed.name, listed.calibrator.version().unwrap_or_else(|_| "?".to_owned())))?;
+        for Finding { what, wrong } in check_calibrator(&listed) {
+            failed |= wrong.is_some();
+            say_finding(what, wrong.as_deref())?;
+        }
+    }
+    Ok(failed)
 }
 
 /// Tries a program and says what it does; whether anything fails.

@@ -10,7 +10,7 @@ use clap::Args;
 
 use super::context::{Context, Pictured};
 use super::lanes::{lanes, side_by_side};
-use super::notes::say_notes;
+use super::notes::{say_absent_calibrators, say_notes};
 use super::pages::Pages;
 use super::part::{Parts, Place, told};
 use super::photos::say_turns;
@@ -82,9 +82,17 @@ impl Task<'_> {
 impl Run {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let mut names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
-        let pages = if self.pages { Some(Pages::of(context, &mut names)?) } else { None };
         // All are checked before the first is run.
-        let scenarios = context.scenarios(&names)?;
+        let mut scenarios = context.scenarios(&names)?;
+        if self.all {
+            // A command of their own runs the others.
+            scenarios.retain(|scenario| !(scenario.nightly && scenario.subject.runs_apart()));
+            names = scenarios.iter().map(|scenario| scenario.name.clone()).collect();
+        }
+        let pages = if self.pages { Some(Pages::of(context, &mut names)?) } else { None };
+        if self.pages {
+            scenarios.sort_by_cached_key(|scenario| names.iter().position(|name| *name == scenario.name));
+        }
         let methods = self.changes.methods(context)?;
         let place = |(name, scenario): (&String, &Scenario)| self.parts.place(context, name, scenario);
         let places = names.iter().zip(&scenarios).map(place).collect::<Result<Vec<_>, Failure>>()?;
@@ -116,7 +124,7 @@ impl Run {
     fn one(&self, context: &Context<'_>, task: &Task<'_>) -> Result<Option<u64>, Failure> {
         let Task { scenario, place, methods, revision, stored, tally, .. } = *task;
         let Changes { seed, trials, .. } = self.changes;
-        let (registry, tools, data) = (context.registry()?, context.toolbox.tools(), context.data()?);
+        let (registry, tools, data) = (context.registry()?, context.tools()?, context.data()?);
         let order = Order { scenario, methods, trials, seed, tools, data, reuse: stored.reuse(tally), registry, stop: None };
         order.check()?;
         let plan = order.plan();
@@ -159,6 +167,7 @@ fn say_before(plan: &Plan<'_>) -> Result<(), Failure> {
         let photos = plan.data.join(&subject.folder);
         say_turns(&subject.files.iter().map(|file| photos.join(file)).collect::<Vec<_>>())?;
     }
+    say_absent_calibrators(plan);
     Ok(())
 }
 

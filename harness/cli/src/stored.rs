@@ -55,7 +55,7 @@ impl Reusing {
 }
 
 /// What stands for all code that has no digest of its own: that of OpenCV's methods, or of whoever made this program of calibench's crates.
-fn program(context: &Context<'_>) -> Option<String> {
+pub fn program(context: &Context<'_>) -> Option<String> {
     if let Some(code) = context.toolbox.code.filter(|_| is_code_known()) {
         return Some(code.to_owned());
     }

@@ -56,12 +56,7 @@ struct Pair {
 pub(crate) fn arrange(marks: &[Mark], size: f64) -> Result<Arranged, NotFound> {
     let pairs = pairs(marks, size);
     spacing(&pairs)?;
-    let mut groups: Vec<usize> = (0..marks.len()).collect();
-    let agreeing = pairs.iter().filter(|pair| pair.across.abs() < ACROSS && (pair.along - 1.0).abs() < ALONG);
-    for [a, b] in agreeing.map(|pair| pair.marks) {
-        let (one, other) = (groups[a].min(groups[b]), groups[a].max(groups[b]));
-        groups.iter_mut().filter(|group| **group == other).for_each(|group| *group = one);
-    }
+    let groups = groups(marks.len(), &pairs);
     let mut kept = largest(&groups, &(0..marks.len()).collect::<Vec<_>>());
     let least = pairs.iter().map(|pair| pair.apart).fold(f64::INFINITY, f64::min);
     kept.extend(reached(marks, &kept, size, least));
@@ -72,6 +67,38 @@ pub(crate) fn arrange(marks: &[Mark], size: f64) -> Result<Arranged, NotFound> {
         return Err(NotFound::OtherArrangement { marks: marks.len(), together: kept.len(), instead: None });
     }
     Ok(Arranged { kept, strays })
+}
+
+/// Of each mark the first one of those that it agrees with, in whatever many steps.
+fn groups(count: usize, pairs: &[Pair]) -> Vec<usize> {
+    let mut groups: Vec<usize> = (0..count).collect();
+    let agreeing = pairs.iter().filter(|pair| pair.across.abs() < ACROSS && (pair.along - 1.0).abs() < ALONG);
+    for [a, b] in agreeing.map(|pair| pair.marks) {
+        let (one, other) = (groups[a].min(groups[b]), groups[a].max(groups[b]));
+        groups.iter_mut().filter(|group| **group == other).for_each(|group| *group = one);
+    }
+    groups
+}
+
+/// The marks of each of several boards, the largest first: those that agree with each other, with those that no neighbour reaches and that stand where these have
+/// them. What agrees with fewer than two others is no board, nor are marks at other distances.
+pub(crate) fn boards(marks: &[Mark], size: f64) -> Vec<Vec<usize>> {
+    let all_pairs = pairs(marks, size);
+    let groups = groups(marks.len(), &all_pairs);
+    let members = |group: usize| (0..marks.len()).filter(|index| groups[*index] == group).collect::<Vec<_>>();
+    let of = |own: &[usize]| own.iter().map(|index| marks[*index]).collect::<Vec<_>>();
+    let mut boards: Vec<Vec<usize>> = (0..marks.len()).filter(|group| groups[*group] == *group).map(members).collect();
+    boards.retain(|own| own.len() >= LEAST && spacing(&pairs(&of(own), size)).is_ok());
+    boards.sort_by_key(|own| std::cmp::Reverse(own.len()));
+    let mut free: Vec<usize> = (0..marks.len()).filter(|index| !boards.iter().any(|own| own.contains(index))).collect();
+    let least = all_pairs.iter().map(|pair| pair.apart).fold(f64::INFINITY, f64::min);
+    for own in &mut boards {
+        let more: Vec<usize> = reached(marks, own, size, least).into_iter().filter(|index| free.contains(index)).collect();
+        free.retain(|index| !more.contains(index));
+        own.extend(more);
+        own.sort_unstable();
+    }
+    boards
 }
 
 /// The largest group among these members; of several the first.

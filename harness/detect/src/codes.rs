@@ -3,7 +3,7 @@
 use calibench_model::Image;
 use calibench_model::boards::{Layout, Rings, ring_codes};
 
-use crate::arrange::{Mark, arrange};
+use crate::arrange::{self, Mark, arrange};
 use crate::corners::found;
 use crate::plane::{Homography, Linear, Point, length, minus};
 use crate::round::{Round, rounds};
@@ -47,7 +47,9 @@ pub(crate) fn detect(image: &Image, rings: &Rings, layout: &Layout) -> Result<Fo
     let kept = arranged.as_ref().map_or(0, |arranged| arranged.kept.len());
     let sure = kept >= LEAST || (kept >= layout.points.len().min(2) && 2 * kept >= seen.all());
     if !sure || 5 * kept < 4 * seen.coded.len() {
-        mirrored(&reader, &rounds, &codes, rings, layout, kept)?;
+        // Of several fields no more agree with each other than with those of another one.
+        let together = if let Err(NotFound::OtherArrangement { together, .. }) = &arranged { *together } else { kept };
+        mirrored(&reader, &rounds, &codes, rings, layout, together)?;
     }
     let none = NotFound::NoCode { round: rounds.len(), codes: seen.all(), bits: rings.bits };
     let arranged = match arranged {
@@ -56,20 +58,46 @@ pub(crate) fn detect(image: &Image, rings: &Rings, layout: &Layout) -> Result<Fo
         Ok(_) | Err(NotFound::OtherArrangement { together: ..2, .. }) => return Err(none),
         Err(error) => return Err(error),
     };
-    let mut kept: Vec<&Coded> = arranged.kept.iter().map(|index| &seen.coded[*index]).collect();
-    kept.sort_by_key(|coded| coded.index);
     let mut doubts: Vec<Doubt> = arranged.strays.iter().map(|index| Doubt::Stray { id: seen.coded[*index].mark.id }).collect();
     doubts.extend(seen.foreign.iter().map(|id| Doubt::Foreign { id: *id }));
+    let mut found = located(arranged.kept.iter().map(|index| &seen.coded[*index]).collect(), rings, layout);
+    doubts.append(&mut found.doubts);
+    Ok(Found { doubts, ..found })
+}
+
+/// The codes of each of several fields that are alike, if there are several; the largest first, with what is in doubt of all of them.
+pub(crate) fn detect_all(image: &Image, rings: &Rings, layout: &Layout) -> Option<Vec<Found>> {
+    let rounds = rounds(image);
+    let codes = ring_codes(rings.bits, rings.even);
+    let seen = read(&Reader { image, bits: rings.bits, ring: rings.ring, mirrored: false }, &rounds, &codes, rings, layout);
+    let mut fields = arrange::boards(&marks(&seen), rings.diameter);
+    fields.retain(|own| own.len() >= LEAST);
+    if fields.len() < 2 {
+        return None;
+    }
+    let is_free = |index: &usize| !fields.iter().any(|own| own.contains(index));
+    let mut doubts: Vec<Doubt> =
+        (0..seen.coded.len()).filter(is_free).map(|index| Doubt::Stray { id: seen.coded[index].mark.id }).collect();
+    doubts.extend(seen.foreign.iter().map(|id| Doubt::Foreign { id: *id }));
+    let of_field = |own: &Vec<usize>| located(own.iter().map(|index| &seen.coded[*index]).collect(), rings, layout);
+    let mut all: Vec<Found> = fields.iter().map(of_field).collect();
+    all[0].doubts.extend(doubts);
+    Some(all)
+}
+
+/// The points of codes that stand as the field has them, those that are seen twice left out and in doubt.
+fn located(mut kept: Vec<&Coded>, rings: &Rings, layout: &Layout) -> Found {
+    kept.sort_by_key(|coded| coded.index);
     let twice: Vec<usize> = kept.windows(2).filter(|pair| pair[0].index == pair[1].index).map(|pair| pair[0].index).collect();
     kept.retain(|coded| !twice.contains(&coded.index));
-    doubts.extend(twice.iter().map(|index| Doubt::Twice { id: (rings.first + index) as u32 }));
+    let doubts = twice.iter().map(|index| Doubt::Twice { id: (rings.first + index) as u32 }).collect();
     let pairs: Vec<(Point, Point)> = kept.iter().map(|coded| (coded.mark.plate, coded.mark.at)).collect();
     let map = Homography::fitted(&pairs).filter(|_| spans(&pairs));
     let point = |coded: &&Coded| {
         let linear = map.map_or(coded.linear, |map| map.linear(coded.mark.plate));
         found(coded.index, &layout.points[coded.index], coded.mark.at, linear)
     };
-    Ok(Found { points: kept.iter().map(point).collect(), markers: kept.len(), doubts })
+    Found { points: kept.iter().map(point).collect(), markers: kept.len(), doubts, light: false }
 }
 
 /// Whether places on the board determine a homography well: at least two rows and columns, and more than four.

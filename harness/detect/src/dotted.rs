@@ -41,6 +41,11 @@ pub(crate) fn detect(image: &Image, board: &Dotted, layout: &Layout) -> Result<F
     })
 }
 
+/// All boards that are seen, the largest first.
+pub(crate) fn detect_all(image: &Image, board: &Dotted, layout: &Layout) -> Vec<Found> {
+    parts::detect_all(image, layout, READING, |sheet, image| sight(sheet, image, board, layout))
+}
+
 fn sight(sheet: &Sheet, image: &Image, board: &Dotted, layout: &Layout) -> Result<Sight, NotFound> {
     let squares = sheet.squares(image);
     let placed = Placed::by(&squares, sheet, board)?;

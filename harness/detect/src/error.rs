@@ -128,6 +128,58 @@ pub enum NotFound {
         /// The kind and counts that the grid has if it is whole.
         instead: Option<String>,
     },
+    /// A grid of as many circles, in other rows and columns.
+    #[error(
+        "{circles} circles are seen in a grid, as many as the board has, and in other rows and columns{}",
+        instead.as_deref().map_or_else(String::new, |board| format!(": it is whole as one of {board}"))
+    )]
+    OtherRows {
+        /// Its circles.
+        circles: usize,
+        /// The kind and counts that the grid has if it is whole.
+        instead: Option<String>,
+    },
+    /// A grid whose circles unlike the others are not where the board has them.
+    #[error(
+        "{circles} circles are seen in a grid; those unlike the others are not where the board has them, or too small to be told{}",
+        instead.as_deref().map_or_else(String::new, |board| format!(": without them it is whole as one of {board}"))
+    )]
+    OtherMarks {
+        /// Its circles.
+        circles: usize,
+        /// The kind and counts that the grid has if it is whole.
+        instead: Option<String>,
+    },
+    /// A part of a grid that may be several parts of the board.
+    #[error(
+        "{circles} circles of {expected} are seen in a grid: too few, or too little of those that are unlike the others, to be sure which part of the board it is"
+    )]
+    UnsurePart {
+        /// Its circles.
+        circles: usize,
+        /// The board's.
+        expected: usize,
+    },
+    /// A grid whose circles stand where no smooth surface has them.
+    #[error(
+        "{circles} circles are seen in a grid, up to {by:.2} of their distance off where their neighbours have them: no flat board in one lens"
+    )]
+    BentGrid {
+        /// Its circles.
+        circles: usize,
+        /// How far, in distances of neighbours.
+        by: f64,
+    },
+    /// A grid of areas of many sizes.
+    #[error(
+        "{circles} round areas are seen in a grid, {unlike} of them larger or smaller than the others: no board whose circles are alike"
+    )]
+    OtherSizes {
+        /// Its areas.
+        circles: usize,
+        /// Those of other sizes.
+        unlike: usize,
+    },
     /// No ring code of the board.
     #[error(
         "{round} round areas are seen, and {codes} of them have ring codes of {bits} sectors; the board's are not among them, or too few to be sure of"
@@ -236,6 +288,11 @@ impl NotFound {
             Self::OtherArrangement { .. } => "other_arrangement",
             Self::NoCorners { .. } => "no_corners",
             Self::NoGrid { .. } => "no_grid",
+            Self::OtherRows { .. } => "other_rows",
+            Self::OtherMarks { .. } => "other_marks",
+            Self::UnsurePart { .. } => "unsure_part",
+            Self::BentGrid { .. } => "bent_grid",
+            Self::OtherSizes { .. } => "other_sizes",
             Self::NoCode { .. } => "no_code",
             Self::NoPuzzle { .. } => "no_puzzle",
             Self::NoDots { .. } => "no_dots",

@@ -13,6 +13,8 @@ pub struct Found {
     pub markers: usize,
     /// What was left out because it is in doubt.
     pub doubts: Vec<Doubt>,
+    /// Whether it is a grid of circles that are lighter than what is around them.
+    pub light: bool,
 }
 
 /// A point that is seen.
@@ -56,15 +58,29 @@ pub enum Doubt {
         /// How many.
         corners: usize,
     },
-    /// Corners of a chessboard that are not seen where the others have them: left out.
+    /// Corners of a chessboard or circles of a grid that are not seen where the others have them: left out.
     Unseen {
         /// How many.
         corners: usize,
     },
-    /// Corners of the pattern beyond those that the board has: left out.
+    /// Corners or circles of the pattern beyond those that the board has: left out.
     Beyond {
         /// How many.
         corners: usize,
+    },
+    /// Several such boards; these points are of one of them.
+    Several {
+        /// How many points of each are seen, from the left.
+        points: Vec<usize>,
+    },
+    /// Circles unlike the others of a grid that is said to have none.
+    Unlike {
+        /// The first of them by name.
+        first: String,
+        /// How many.
+        circles: usize,
+        /// The board with circles as they are seen, in words.
+        instead: Option<String>,
     },
 }
 
@@ -76,6 +92,8 @@ impl Doubt {
             Self::Stray { .. } | Self::Dots { .. } => "stray",
             Self::Foreign { .. } | Self::Beyond { .. } => "foreign",
             Self::Unseen { .. } => "unseen",
+            Self::Several { .. } => "several",
+            Self::Unlike { .. } => "unlike",
         }
     }
 }
@@ -88,8 +106,19 @@ impl fmt::Display for Doubt {
             Self::Foreign { id } => write!(f, "mark {id} is none of the board's"),
             Self::TwiceCorners { first, corners } => write!(f, "corners are seen more than once, {corners} in all, the first {first}"),
             Self::Dots { corners } => write!(f, "dots around corners are not the pattern's, {corners} corners left out"),
-            Self::Unseen { corners } => write!(f, "corners are not seen where the others have them, {corners} corners left out"),
-            Self::Beyond { corners } => write!(f, "the pattern goes on beyond the board, {corners} corners left out"),
+            Self::Unseen { corners } => write!(f, "points are not seen where the others have them, {corners} left out"),
+            Self::Beyond { corners } => write!(f, "the pattern goes on beyond the board, {corners} points left out"),
+            Self::Several { points } => {
+                let counts = points.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+                write!(f, "{} boards of this kind are seen, from the left with {counts} points", points.len())
+            }
+            Self::Unlike { first, circles, instead } => {
+                write!(
+                    f,
+                    "circles are unlike the others, {circles} in all, the first {first}: as the board is described nothing tells which end is which"
+                )?;
+                instead.as_ref().map_or(Ok(()), |board| write!(f, "; counted as here it is {board}"))
+            }
         }
     }
 }

@@ -55,7 +55,7 @@ impl Ground {
 }
 
 /// Twice the range of the quieter tiles: noise reaches about that far in a window.
-fn least_contrast(extremes: &[[f32; 2]]) -> f32 {
+pub(crate) fn least_contrast(extremes: &[[f32; 2]]) -> f32 {
     let mut ranges: Vec<f32> = extremes.iter().map(|[low, high]| high - low).filter(|range| range.is_finite()).collect();
     if ranges.is_empty() {
         return LEAST_CONTRAST[1];

@@ -7,8 +7,8 @@ use calibench_model::stop;
 use crate::plane::{Point, cross, distance, length, minus, plus, times};
 use crate::round::Round;
 
-/// Neighbours have areas that differ by this factor at most.
-const ALIKE: f64 = 2.0;
+/// Neighbours have areas that differ by this factor at most, where areas tell anything.
+pub(crate) const ALIKE: f64 = 2.0;
 /// So many of the nearest are looked at for the first steps of a grid.
 const NEAREST: usize = 8;
 /// How far a neighbour may be from where the last step has it, as a fraction of the shorter step.
@@ -24,6 +24,8 @@ pub(crate) type Grid = BTreeMap<[i32; 2], usize>;
 /// The grids among round areas, one after the other; the areas by their indices.
 pub(crate) struct Grids<'a> {
     rounds: &'a [Round],
+    /// By which factor neighbours' areas may differ.
+    alike: f64,
     /// Of each area, its nearest of like size.
     neighbours: Vec<Vec<usize>>,
     seeds: VecDeque<usize>,
@@ -40,14 +42,15 @@ pub(crate) fn limited(mut rounds: Vec<Round>) -> Vec<Round> {
     rounds
 }
 
-fn alike(a: &Round, b: &Round) -> bool {
-    a.area < ALIKE * b.area && b.area < ALIKE * a.area
+fn alike(a: &Round, b: &Round, factor: f64) -> bool {
+    a.area < factor * b.area && b.area < factor * a.area
 }
 
 impl<'a> Grids<'a> {
-    pub(crate) fn new(rounds: &'a [Round]) -> Self {
-        let neighbours: Vec<Vec<usize>> = (0..rounds.len()).map(|index| nearest(rounds, index)).collect();
-        let mut grids = Self { rounds, neighbours, seeds: VecDeque::new(), taken: vec![false; rounds.len()] };
+    /// Of neighbours whose areas differ by less than the factor `alike`.
+    pub(crate) fn new(rounds: &'a [Round], alike: f64) -> Self {
+        let neighbours: Vec<Vec<usize>> = (0..rounds.len()).map(|index| nearest(rounds, index, alike)).collect();
+        let mut grids = Self { rounds, alike, neighbours, seeds: VecDeque::new(), taken: vec![false; rounds.len()] };
         let mut seeds: Vec<(usize, usize)> = (0..rounds.len()).map(|index| (grids.paired(index).len(), index)).collect();
         seeds.sort_unstable_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
         grids.seeds = seeds.into_iter().map(|(_, index)| index).collect();
@@ -100,7 +103,7 @@ impl<'a> Grids<'a> {
 
     /// The free area nearest to a point among the neighbours of one, or of all.
     fn near(&self, of: usize, at: Point, reach: f64) -> Option<usize> {
-        let free = |index: &usize| !self.taken[*index] && alike(&self.rounds[of], &self.rounds[*index]);
+        let free = |index: &usize| !self.taken[*index] && alike(&self.rounds[of], &self.rounds[*index], self.alike);
         let by_distance = |index: usize| (distance(self.rounds[index].at, at), index);
         let nearest = self.neighbours[of].iter().copied().filter(free).map(by_distance).min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.filter(|(distance, _)| *distance < reach).map(|(_, index)| index)
@@ -125,9 +128,9 @@ impl Iterator for Grids<'_> {
     }
 }
 
-fn nearest(rounds: &[Round], index: usize) -> Vec<usize> {
+fn nearest(rounds: &[Round], index: usize, factor: f64) -> Vec<usize> {
     let own = &rounds[index];
-    let others = (0..rounds.len()).filter(|other| *other != index && alike(own, &rounds[*other]));
+    let others = (0..rounds.len()).filter(|other| *other != index && alike(own, &rounds[*other], factor));
     let mut all: Vec<(f64, usize)> = others.map(|other| (distance(own.at, rounds[other].at), other)).collect();
     let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
     if all.len() > NEAREST {
@@ -152,13 +155,13 @@ mod tests {
 
     #[test]
     fn a_slanted_grid_is_grown_whole_and_what_lies_beside_is_left_out() {
-        let round = |at: Point| Round { at, moments: [4.0, 0.0, 4.0], area: 50.0 };
+        let round = |at: Point| Round { at, moments: [4.0, 0.0, 4.0], area: 50.0, is_oval: true, is_cut: false };
         let mut rounds: Vec<Round> = (0..20)
             .map(|index| (f64::from(index % 5), f64::from(index / 5)))
             .map(|(x, y)| round([100.0 + 20.0 * x + 6.0 * y, 80.0 + 3.0 * x + 18.0 * y + 0.5 * x * y]))
             .collect();
         rounds.extend([[20.0, 20.0], [300.0, 100.0]].map(round));
-        let grids: Vec<Grid> = Grids::new(&rounds).collect();
+        let grids: Vec<Grid> = Grids::new(&rounds, ALIKE).collect();
         assert_eq!(grids[0].len(), 20);
         assert!(grids[0].values().all(|index| *index < 20));
         assert_eq!(bases().filter(|basis| *basis == [[1, 0], [0, 1]]).count(), 1);

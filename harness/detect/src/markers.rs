@@ -1,9 +1,9 @@
 //! Boards with square markers.
 
-use calibench_model::Image;
 use calibench_model::boards::{Board, Dictionary, Layout, Marker};
+use calibench_model::{Image, TargetKind};
 
-use crate::arrange::{Arranged, Mark, arrange};
+use crate::arrange::{self, Arranged, Mark, arrange};
 use crate::cells::{Form, Sight, read};
 use crate::corners;
 use crate::ground::Ground;
@@ -12,6 +12,7 @@ use crate::patches::Patches;
 use crate::plane::{Homography, Point, distance, mean, minus, plus, times};
 use crate::quads::{adjusted, quad};
 use crate::reasons;
+use crate::smooth::smoothed;
 use crate::{Doubt, Found, NotFound};
 
 /// Where between dark (0) and light (1) areas end. At the lower one those that touch by their corners come apart, however blurred; at the upper one narrow frames hold together.
@@ -94,11 +95,15 @@ pub(crate) fn identified(sights: &[Sight], of: &Markers) -> (Vec<Seen>, Vec<u32>
 /// # Errors
 /// As of [`arrange`].
 pub(crate) fn arranged(seen: &[Seen], of: &Markers) -> Result<Arranged, NotFound> {
+    arrange(&marks(seen, of), of.size())
+}
+
+fn marks(seen: &[Seen], of: &Markers) -> Vec<Mark> {
     let mark = |seen: &Seen| {
         let plate = mean(&corners_of(&of.layout.markers[seen.index]));
         Mark { id: seen.id, plate, at: seen.map.at(plate), linear: Some(seen.map.linear(plate)) }
     };
-    arrange(&seen.iter().map(mark).collect::<Vec<_>>(), of.size())
+    seen.iter().map(mark).collect()
 }
 
 fn corners_of(marker: &Marker) -> [Point; 4] {
@@ -113,10 +118,7 @@ pub(crate) fn quadrangles(image: &Image, form: Form) -> Vec<[Point; 4]> {
     for level in LEVELS {
         let patches = Patches::new(image, &ground, level, sides);
         let quads = patches.iter().filter_map(|runs| quad(runs, LEAST_SIDE));
-        all.extend(quads.filter_map(|corners| {
-            let side = (0..4).map(|i| distance(corners[i], corners[(i + 1) % 4])).fold(f64::INFINITY, f64::min);
-            adjusted(image, &corners, (0.45 * side / form.all() as f64).clamp(1.5, 5.0))
-        }));
+        all.extend(quads.filter_map(|corners| adjusted(image, &corners, reach(&corners, form.all()))));
     }
     all
 }
@@ -141,18 +143,67 @@ pub(crate) fn detect(image: &Image, board: &Board, layout: &Layout) -> Result<Fo
     let (seen, foreign) = identified(&sights, &of);
     let arranged = reasons::checked(image, &quadrangles, &sights, &seen, &foreign, &of);
     let arranged = arranged.map_err(|why| instead::named(why, board, &sights))?;
+    if !arranged.strays.is_empty()
+        && let Some(other) = instead::better(board, &sights, arranged.kept.len())
+    {
+        return Err(NotFound::OtherArrangement { marks: seen.len(), together: arranged.kept.len(), instead: Some(other) });
+    }
     let mut doubts: Vec<Doubt> = arranged.strays.iter().map(|index| Doubt::Stray { id: seen[*index].id }).collect();
     doubts.extend(foreign.iter().map(|id| Doubt::Foreign { id: *id }));
-    let kept: Vec<Seen> = arranged.kept.iter().map(|index| seen[*index]).collect();
+    let mut found = located(image, board, layout, arranged.kept.iter().map(|index| seen[*index]).collect())?;
+    doubts.append(&mut found.doubts);
+    Ok(Found { doubts, ..found })
+}
+
+/// The points of each of several boards with the same markers, if there are several; the largest first, with what is in doubt of all of them.
+pub(crate) fn detect_all(image: &Image, board: &Board, layout: &Layout) -> Option<Vec<Found>> {
+    let of = Markers::new(board, layout)?;
+    let sights = frames(image, &quadrangles(image, of.form), of.form);
+    let (seen, foreign) = identified(&sights, &of);
+    let boards = arrange::boards(&marks(&seen, &of), of.size());
+    let is_free = |index: &usize| !boards.iter().any(|own| own.contains(index));
+    let mut doubts: Vec<Doubt> = (0..seen.len()).filter(is_free).map(|index| Doubt::Stray { id: seen[index].id }).collect();
+    doubts.extend(foreign.iter().map(|id| Doubt::Foreign { id: *id }));
+    let of_board = |own: &Vec<usize>| located(image, board, layout, own.iter().map(|index| seen[*index]).collect()).ok();
+    let mut all: Vec<Found> = boards.iter().filter_map(of_board).filter(|found| !found.points.is_empty()).collect();
+    if all.len() < 2 {
+        return None;
+    }
+    all[0].doubts.extend(doubts);
+    Some(all)
+}
+
+/// The points of markers that stand as the board has them, those that are seen twice or look otherwise left out and in doubt.
+fn located(image: &Image, board: &Board, layout: &Layout, kept: Vec<Seen>) -> Result<Found, NotFound> {
     let (kept, twice) = once(kept);
-    doubts.extend(twice.into_iter().map(|id| Doubt::Twice { id }));
+    let mut doubts: Vec<Doubt> = twice.into_iter().map(|id| Doubt::Twice { id }).collect();
     let (kept, bent): (Vec<Seen>, Vec<Seen>) = kept.iter().partition(|marker| stands(marker, &kept, layout));
     doubts.extend(bent.into_iter().map(|marker| Doubt::Stray { id: marker.id }));
     let points = match board {
         Board::Charuco(charuco) => corners::of_squares(image, layout, &kept, charuco.square)?,
+        _ if layout.points.iter().all(|point| point.kind == TargetKind::Corner) => {
+            corners::of_markers(image, layout, &smoother(image, board, layout, &kept))
+        }
         _ => corners::of_markers(image, layout, &kept),
     };
-    Ok(Found { points, markers: kept.len(), doubts })
+    Ok(Found { points, markers: kept.len(), doubts, light: false })
+}
+
+/// Markers that stand alone, whose sides alone tell their corners, adjusted once more to the edges of a smoothed image: noise moves those of a blurred one.
+fn smoother(image: &Image, board: &Board, layout: &Layout, kept: &[Seen]) -> Vec<Seen> {
+    let cells = board.dictionary().map_or(1, |(dictionary, border)| dictionary.side + 2 * border);
+    let smooth = smoothed(image);
+    let one = |seen: &Seen| {
+        let corners = adjusted(&smooth, &seen.corners, reach(&seen.corners, cells))?;
+        Some(Seen { corners, map: Homography::of_square(layout.markers[seen.index].corners, corners)?, ..*seen })
+    };
+    kept.iter().map(|seen| one(seen).unwrap_or(*seen)).collect()
+}
+
+/// How far from its sides the edges of a marker of so many cells are looked for, px.
+fn reach(corners: &[Point; 4], cells: usize) -> f64 {
+    let side = (0..4).map(|i| distance(corners[i], corners[(i + 1) % 4])).fold(f64::INFINITY, f64::min);
+    (0.45 * side / cells as f64).clamp(1.5, 5.0)
 }
 
 /// Whether a marker looks as the nearest others have it, wherever it is: something beside a marker may have been taken for a part of it. That it is where it can be

@@ -28,16 +28,28 @@ struct Extent {
 }
 
 impl Extent {
-    fn holds(self, sides: [u32; 2], image: &Image) -> bool {
+    fn holds(self, sides: [u32; 2]) -> bool {
         let (width, height) = (self.x[1] - self.x[0], self.y[1] + 1 - self.y[0]);
-        let inside = self.x[0] > 0 && self.y[0] > 0 && (self.x[1] as usize) < image.width() && (self.y[1] as usize + 1) < image.height();
-        inside && width.min(height) >= sides[0] && width.max(height) <= sides[1]
+        width.min(height) >= sides[0] && width.max(height) <= sides[1]
+    }
+
+    fn is_inside(self, image: &Image) -> bool {
+        self.x[0] > 0 && self.y[0] > 0 && (self.x[1] as usize) < image.width() && (self.y[1] as usize + 1) < image.height()
     }
 }
 
 impl Patches {
     /// The areas darker than `level` between the dark (0) and the light (1) around, whose sides are in `sides` px and that lie inside the image.
     pub(crate) fn new(image: &Image, ground: &Ground, level: f32, sides: [u32; 2]) -> Self {
+        Self::of(image, ground, level, |extent| extent.holds(sides) && extent.is_inside(image))
+    }
+
+    /// The same with those that the border of the image cuts off.
+    pub(crate) fn with_cut(image: &Image, ground: &Ground, level: f32, sides: [u32; 2]) -> Self {
+        Self::of(image, ground, level, |extent| extent.holds(sides))
+    }
+
+    fn of(image: &Image, ground: &Ground, level: f32, is_kept: impl Fn(&Extent) -> bool) -> Self {
         let (runs, mut parents) = connected(image, ground, level);
         let mut extents: Vec<Extent> = Vec::new();
         let mut areas = vec![0_u32; runs.len()];
@@ -53,7 +65,7 @@ impl Patches {
                 extent.y[1] = run.y;
             }
         }
-        let kept: Vec<bool> = extents.iter().map(|extent| extent.holds(sides, image)).collect();
+        let kept: Vec<bool> = extents.iter().map(is_kept).collect();
         sorted(&runs, &areas, &kept)
     }
 

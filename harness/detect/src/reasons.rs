@@ -63,7 +63,8 @@ fn others(image: &Image, quadrangles: &[[Point; 4]], fitting: usize, of: &Marker
     let forms: Vec<(Form, Vec<Sight>)> =
         (4..=7).flat_map(|side| [1, 2].map(|border| Form { side, border })).map(|form| (form, frames(image, quadrangles, form))).collect();
     let mut best = (2 * fitting + 1, None);
-    for dictionary in Dictionary::names().filter_map(Dictionary::named) {
+    // The board's own first: a smaller dictionary may hold the same markers.
+    for dictionary in std::iter::once(of.dictionary).chain(Dictionary::names().filter_map(Dictionary::named)) {
         for (form, sights) in forms.iter().filter(|(form, _)| form.side == dictionary.side) {
             let seen = sights.iter().filter(|sight| dictionary.identify(sight.cells, 0).is_some()).count();
             if seen > best.0 {

@@ -1,8 +1,8 @@
 //! Round dark areas.
 
-use calibench_model::{Image, stop};
+use calibench_model::{Image, stop, upper_median};
 
-use crate::ground::Ground;
+use crate::ground::{Ground, grey};
 use crate::patches::{Patches, Run};
 use crate::plane::Point;
 use crate::quads::{hull, largest_quad};
@@ -17,9 +17,11 @@ const FILLED: [f64; 2] = [0.93, 1.05];
 const ELONGATED: f64 = 4.0;
 /// The share of its hull that the largest quadrangle in it takes up at most: 0.64 for an ellipse; told from this many px on.
 const SHARE: f64 = 0.84;
-const TOLD: f64 = 60.0;
+pub(crate) const TOLD: f64 = 60.0;
+/// Where the middle, the ring and the surroundings of a ring are looked at, in radii.
+const MIDDLE: [f64; 3] = [0.12, 0.75, 1.4];
 
-/// A round dark area, with what is in it: a disc or a ring.
+/// A dark area, with what is in it: of those that are round a disc or a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Round {
     /// Its centre of gravity.
@@ -28,17 +30,30 @@ pub(crate) struct Round {
     pub moments: [f64; 3],
     /// Its area, px^2.
     pub area: f64,
+    /// Whether its outline is a circle seen from anywhere.
+    pub is_oval: bool,
+    /// Whether it reaches the border of the image: what is beyond is not seen.
+    pub is_cut: bool,
 }
 
 /// The round dark areas of an image, in reading order of their tops.
 pub(crate) fn rounds(image: &Image) -> Vec<Round> {
+    let mut all = areas(image);
+    all.retain(|area| area.is_oval && !area.is_cut);
+    all
+}
+
+/// The dark areas of an image that are not much longer than wide, in reading order of their tops.
+pub(crate) fn areas(image: &Image) -> Vec<Round> {
     let most = image.width().min(image.height()) as u32 / 2;
-    let patches = Patches::new(image, &Ground::new(image), LEVEL, [LEAST, most]);
-    patches.iter().filter_map(Round::of).collect()
+    let patches = Patches::with_cut(image, &Ground::new(image), LEVEL, [LEAST, most]);
+    let border = [image.width() as u32, image.height() as u32 - 1];
+    patches.iter().map(|runs| Round::of(runs, border)).filter(|area| area.elongation() < ELONGATED).collect()
 }
 
 impl Round {
-    fn of(runs: &[Run]) -> Option<Self> {
+    /// Of these runs in an image that ends at `border`: the column after its last, its last row.
+    fn of(runs: &[Run], border: [u32; 2]) -> Self {
         stop::point();
         let filled = filled(runs);
         let [mut area, mut x, mut y] = [0.0; 3];
@@ -48,6 +63,7 @@ impl Round {
             x += count * 0.5 * (from + to - 1.0);
             y += count * row;
         }
+        let is_cut = runs.iter().any(|run| run.from == 0 || run.y == 0 || run.to == border[0] || run.y == border[1]);
         let at = [x / area, y / area];
         let mut moments = [0.0; 3];
         for &[row, from, to] in &filled {
@@ -56,8 +72,24 @@ impl Round {
             moments[1] += count * dx * dy;
             moments[2] += count * (dy * dy + 1.0 / 12.0);
         }
-        let round = Self { at, moments: moments.map(|moment| moment / area), area };
-        (round.is_round() && (area < TOLD || largest_quad(&hull(runs)).is_some_and(|(_, share)| share < SHARE))).then_some(round)
+        let round = Self { at, moments: moments.map(|moment| moment / area), area, is_oval: false, is_cut };
+        let is_filled = round.elongation() < ELONGATED && (FILLED[0]..FILLED[1]).contains(&round.share());
+        Self { is_oval: is_filled && (area < TOLD || largest_quad(&hull(runs)).is_some_and(|(_, share)| share < SHARE)), ..round }
+    }
+
+    /// How light its middle is between its own grey value (0) and that of its surroundings (1): a ring has a hole.
+    pub(crate) fn hole(&self, image: &Image) -> f64 {
+        let [x, y] = self.axes();
+        let around = |radius: f64, count: u32| {
+            let at = |step: u32| {
+                let (sine, cosine) = (f64::from(step) * std::f64::consts::TAU / f64::from(count)).sin_cos();
+                let [u, v] = [radius * cosine, radius * sine];
+                grey(image, [self.at[0] + x[0] * u + x[1] * v, self.at[1] + y[0] * u + y[1] * v])
+            };
+            upper_median((0..count).map(at)).unwrap_or(f64::NAN)
+        };
+        let (middle, own, outside) = (around(MIDDLE[0], 5), around(MIDDLE[1], 16), around(MIDDLE[2], 16));
+        (middle - own) / (outside - own)
     }
 
     /// By how much its area is not that of the ellipse of its moments, as a fraction.
@@ -75,10 +107,6 @@ impl Round {
     fn share(&self) -> f64 {
         let [xx, xy, yy] = self.moments;
         self.area / (4.0 * std::f64::consts::PI * (xx * yy - xy * xy).max(0.0).sqrt())
-    }
-
-    fn is_round(&self) -> bool {
-        self.elongation() < ELONGATED && (FILLED[0]..FILLED[1]).contains(&self.share())
     }
 
     /// From the unit circle to its ellipse, without a turn.
@@ -124,6 +152,11 @@ mod tests {
         });
         let found = rounds(&image);
         assert_eq!(found.len(), 2, "{found:?}");
+        let holes = found.iter().map(|round| round.hole(&image)).collect::<Vec<_>>();
+        assert!(
+            holes.iter().filter(|hole| **hole < 0.1).count() == 1 && holes.iter().filter(|hole| **hole > 0.9).count() == 1,
+            "{holes:?}"
+        );
         let disc = found.iter().find(|round| round.at[0] < 40.0).unwrap();
         assert!((disc.at[0] - 20.3).abs() < 0.15 && (disc.at[1] - 30.6).abs() < 0.15, "{disc:?}");
         let axes = disc.axes();

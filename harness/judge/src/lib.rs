@@ -36,6 +36,7 @@ use thiserror::Error;
 
 pub use corner_files::{CornerFile, CornerFilesError};
 pub use field::{Field, field_of};
+pub use halves::halves;
 pub use material::{Corners, FEWEST, Material};
 pub use options::{BENT, METHODS, MODELS, OF_CAMERA, Options, usual_methods, usual_models};
 pub use point_files::Expected;

@@ -41,12 +41,24 @@ pub const MODELS: [&str; 14] = [
 /// What is compared on discs.
 pub const OF_DISCS: [&str; 4] = ["centroid", "parametric_circle", "ellipse_edges", "lsm:window=15"];
 
-/// The names of [`METHODS`], of discs those that measure discs; or what measures best alone when a calibration in use is checked.
+/// What is compared on corners of one area, as those of markers that stand alone: the corner of two areas is another model.
+pub const OF_CORNERS: [&str; 6] = [
+    "pixel",
+    "forstner:window=11",
+    "forstner:window=11,iterations=20",
+    "opencv_subpix:window=11",
+    "parametric_junction:window=15,arms=2",
+    "lsm:window=15",
+];
+
+/// The names of [`METHODS`], of discs and of corners of one area those that measure these; or what measures best alone when a calibration in use is checked.
 pub fn usual_methods(kind: TargetKind, of_camera: bool) -> Vec<String> {
-    if kind == TargetKind::Disc {
-        return if of_camera { vec!["ellipse_edges".to_owned()] } else { OF_DISCS.map(str::to_owned).to_vec() };
-    }
-    if of_camera { vec![OF_CAMERA.to_owned()] } else { METHODS.map(str::to_owned).to_vec() }
+    let (alone, all): (&str, &[&str]) = match kind {
+        TargetKind::Disc => ("ellipse_edges", &OF_DISCS),
+        TargetKind::Corner => ("parametric_junction:window=15,arms=2", &OF_CORNERS),
+        _ => (OF_CAMERA, &METHODS),
+    };
+    if of_camera { vec![alone.to_owned()] } else { all.iter().map(|name| (*name).to_owned()).collect() }
 }
 
 /// The names of [`MODELS`], or of those without a board that may be bent where there is no board.

@@ -21,6 +21,7 @@ pub mod stop;
 pub mod target;
 pub mod testfield;
 pub mod told;
+pub mod views;
 
 pub use control::{ControlDisc, ControlRow};
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};

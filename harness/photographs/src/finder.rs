@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use calibench_detect::{FoundPoint, detect};
+use calibench_detect::{Doubt, Found, FoundPoint, detect, detect_all, seen_several};
 use calibench_model::boards::{Board, BoardError, BoardPoint, Layout};
+use calibench_model::views::{photo_of, view_of};
 use calibench_model::{ControlDisc, ControlRow, Image, PointRow, Start, TargetKind};
 use rayon::prelude::*;
 
@@ -14,6 +15,8 @@ use crate::{PhotographsError, Reader};
 pub struct Finder {
     board: Board,
     layout: Layout,
+    /// Whether each of several boards in a photograph counts, as a view of its own.
+    each: bool,
 }
 
 /// What was found of a board in a photograph.
@@ -25,6 +28,10 @@ pub struct Sighting {
     pub why: Option<String>,
     /// What is in doubt about those that there are.
     pub doubts: Vec<String>,
+    /// Whether they are circles lighter than what is around them.
+    pub light: bool,
+    /// How many points of each of several boards are seen, from the left; of one board none is counted.
+    pub boards: Vec<usize>,
 }
 
 impl Finder {
@@ -33,7 +40,19 @@ impl Finder {
     /// # Errors
     /// A board that cannot be.
     pub fn new(board: Board) -> Result<Self, BoardError> {
-        Ok(Self { board, layout: board.layout()? })
+        Ok(Self { board, layout: board.layout()?, each: false })
+    }
+
+    /// It, finding each of several such boards in a photograph as a view of its own, called as [`view_of`] has it: they are told apart in a photograph, from the
+    /// left, and not from one photograph to the next.
+    #[must_use]
+    pub fn of_each(self, each: bool) -> Self {
+        Self { each, ..self }
+    }
+
+    /// Whether each of several boards in a photograph counts.
+    pub const fn is_of_each(&self) -> bool {
+        self.each
     }
 
     /// What finds it, in records: name and version.
@@ -58,7 +77,11 @@ impl Finder {
 
     /// The method that measures them unless another is asked for.
     pub fn usual_method(&self) -> &'static str {
-        if self.kind() == TargetKind::Disc { "ellipse_edges" } else { "parametric_corner" }
+        match self.kind() {
+            TargetKind::Disc => "ellipse_edges",
+            TargetKind::Corner => "parametric_junction:arms=2",
+            _ => "parametric_corner",
+        }
     }
 
     /// Its points, object units: X to the right, Y upwards, Z towards the viewer; of discs their radius and plane, too.
@@ -89,16 +112,46 @@ impl Finder {
 
     /// The board in the photograph `name`.
     pub fn find(&self, image: &Image, name: &str) -> Sighting {
-        let found = match detect(image, &self.board) {
-            Ok(found) => found,
-            Err(why) => return Sighting { why: Some(why.to_string()), ..Sighting::default() },
-        };
-        let row = |point: &FoundPoint| PointRow {
-            image: name.to_owned(),
+        if self.each {
+            return match detect_all(image, &self.board) {
+                Ok(all) => self.sighting(&all, |board| view_of(name, board + 1)),
+                Err(why) => Sighting { why: Some(why.to_string()), ..Sighting::default() },
+            };
+        }
+        let said = detect(image, &self.board);
+        let boards = seen_several(image, &self.board, &said).unwrap_or_default();
+        let several = Some(Doubt::Several { points: boards.clone() }).filter(|_| boards.len() > 1);
+        match said {
+            Ok(mut found) => {
+                found.doubts.extend(several);
+                Sighting { boards, ..self.sighting(&[found], |_| name.to_owned()) }
+            }
+            Err(why) => {
+                let why = several.map_or_else(|| why.to_string(), |several| format!("{several}: {why}"));
+                Sighting { why: Some(why), boards, ..Sighting::default() }
+            }
+        }
+    }
+
+    /// What a point is called in its photograph, by its board where each counts.
+    pub(crate) fn key(&self, row: &PointRow) -> String {
+        let board = photo_of(&row.image).filter(|_| self.each).map_or("", |photo| &row.image[photo.len()..]);
+        format!("{}{board}", row.target)
+    }
+
+    fn sighting(&self, all: &[Found], view: impl Fn(usize) -> String) -> Sighting {
+        let row = |(board, point): (usize, &FoundPoint)| PointRow {
+            image: view(board),
             target: self.layout.points[point.index].id.clone(),
             start: Start { kind: Some(self.layout.points[point.index].kind), affine: Some(point.affine), ..Start::at(point.position) },
         };
-        let doubts = found.doubts.iter().map(ToString::to_string).collect();
-        Sighting { rows: found.points.iter().map(row).collect(), why: None, doubts }
+        let points = all.iter().enumerate().flat_map(|(board, found)| found.points.iter().map(move |point| (board, point)));
+        Sighting {
+            rows: points.map(row).collect(),
+            why: None,
+            doubts: all.iter().flat_map(|found| &found.doubts).map(ToString::to_string).collect(),
+            light: all.iter().any(|found| found.light),
+            boards: if self.each { all.iter().map(|found| found.points.len()).collect() } else { Vec::new() },
+        }
     }
 }

@@ -12,13 +12,15 @@ mod option;
 pub mod points;
 mod reader;
 mod turns;
+pub mod unknown;
 
+pub use calibench_detect::Identified;
 pub use chessboard::Chessboard;
 pub use error::PhotographsError;
 pub use finder::{Finder, Sighting};
 pub use measured::{Corners, Photo};
 pub use measured_board::{MeasuredBoards, measured_board, measured_boards, method_info};
-pub use option::board_of;
+pub use option::{UNKNOWN, board_of};
 pub use reader::{Asked, Reader};
 
 /// The example of the README.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_measure::Operator;
 use calibench_model::camera::ImageSize;
-use calibench_model::{LostRow, PointRow, Start};
+use calibench_model::{LostRow, PixelPoint, PointRow, Start};
 use rayon::prelude::*;
 
 use crate::copies::copies;
@@ -19,6 +19,11 @@ pub const COPY: &str = "copy";
 /// A photograph: the name of its image, where it is, and its size.
 pub type Photo = (String, PathBuf, ImageSize);
 
+/// The points of a photograph under other names.
+fn placed<'n>(corners: &Corners, called: &'n [String]) -> Vec<(&'n str, PixelPoint)> {
+    called.iter().map(String::as_str).zip(corners.points.iter().map(|row| row.start.position)).collect()
+}
+
 /// Measured points, and the photographs that they are of.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Corners {
@@ -26,7 +31,7 @@ pub struct Corners {
     pub points: Vec<PointRow>,
     /// Those without.
     pub lost: Vec<LostRow>,
-    /// The photographs; none where the points were given.
+    /// The photographs, where each of several boards counts one for each view; none where the points were given.
     pub photos: Vec<Photo>,
     /// What is in doubt of where the board was found.
     pub doubts: Vec<String>,
@@ -66,8 +71,8 @@ impl Finder {
             found
         };
         let mut found: Vec<Corners> = photos.par_iter().zip(&names).map(one).collect::<Result<_, _>>()?;
-        let points: Vec<Vec<_>> =
-            found.iter().map(|corners| corners.points.iter().map(|row| (row.target.as_str(), row.start.position)).collect()).collect();
+        let called: Vec<Vec<String>> = found.iter().map(|corners| corners.points.iter().map(|row| self.key(row)).collect()).collect();
+        let points: Vec<Vec<_>> = found.iter().zip(&called).map(|(corners, called)| placed(corners, called)).collect();
         for same in copies(&points) {
             found[same.of].doubts.push(same.said(&names));
             for copy in same.others {
@@ -87,13 +92,18 @@ impl Finder {
         method: &str,
     ) -> Result<Corners, PhotographsError> {
         let image = reader.read(path)?;
-        let Sighting { rows, why, doubts } = self.find(&image, name);
+        let Sighting { rows, why, doubts, .. } = self.find(&image, name);
         let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
         let measured = operator.measure_all(&image, &starts);
         let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
-        let photo = (name.to_owned(), path.to_owned(), size);
+        let mut views: Vec<String> = rows.iter().map(|row| row.image.clone()).collect();
+        views.dedup();
+        if views.is_empty() {
+            views.push(name.to_owned());
+        }
+        let photos = views.into_iter().map(|view| (view, path.to_owned(), size)).collect();
         let doubts = doubts.into_iter().map(|doubt| format!("{name}: {doubt}")).collect();
-        let mut corners = Corners { points: Vec::new(), lost: Vec::new(), photos: vec![photo], doubts };
+        let mut corners = Corners { points: Vec::new(), lost: Vec::new(), photos, doubts };
         let lost =
             |image: String, target: String, status: &str, reason: String| LostRow { image, target, status: status.to_owned(), reason };
         if let Some(why) = why {

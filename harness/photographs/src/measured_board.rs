@@ -42,8 +42,14 @@ pub fn measured_boards(
         stop::point();
         let image = reader.read(path)?;
         let sighting = finder.find(&image, name);
-        let at: Vec<(String, PixelPoint)> = sighting.rows.iter().map(|row| (row.target.clone(), row.start.position)).collect();
-        let (trial, doubts) = measured_sighting(&image, name, (finder, sighting), methods.iter().enumerate());
+        let at: Vec<(String, PixelPoint)> = sighting.rows.iter().map(|row| (finder.key(row), row.start.position)).collect();
+        let (mut trial, mut doubts) = (Trial::default(), Vec::new());
+        for (view, sighting) in views(name, sighting) {
+            let (of_view, in_doubt) = measured_sighting(&image, &view, (finder, sighting), methods.iter().enumerate());
+            trial.points.extend(of_view.points);
+            trial.missed_views.extend(of_view.missed_views);
+            doubts.extend(in_doubt);
+        }
         step();
         Ok((trial, doubts, at))
     };
@@ -63,6 +69,23 @@ pub fn measured_boards(
         whole.doubts.extend(doubts);
     }
     Ok(whole)
+}
+
+/// What was found in the photograph `name` by views, of which there is one where boards do not count each; what is in doubt stands with the first.
+fn views(name: &str, mut found: Sighting) -> Vec<(String, Sighting)> {
+    let doubts = std::mem::take(&mut found.doubts);
+    let mut views: Vec<(String, Sighting)> = Vec::new();
+    for row in std::mem::take(&mut found.rows) {
+        match views.last_mut() {
+            Some((view, own)) if *view == row.image => own.rows.push(row),
+            _ => views.push((row.image.clone(), Sighting { rows: vec![row], ..found.clone() })),
+        }
+    }
+    if views.is_empty() {
+        views.push((name.to_owned(), found));
+    }
+    views[0].1.doubts = doubts;
+    views
 }
 
 /// A method as results list it.

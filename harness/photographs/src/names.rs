@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use calibench_model::camera::ImageSize;
+use calibench_model::views::photo_of;
 
 use crate::PhotographsError;
 
@@ -22,7 +23,8 @@ fn short(path: &Path) -> String {
 pub fn ambiguous<'p, 'n>(photos: &'p [PathBuf], mut wanted: impl Iterator<Item = &'n str>) -> Option<(&'n str, [&'p Path; 2])> {
     let mut called: HashMap<String, Vec<&Path>> = HashMap::new();
     photos.iter().for_each(|path| called.entry(short(path)).or_default().push(path));
-    wanted.find_map(|name| match called.get(name)?.as_slice() {
+    let of = |name: &str| called.get(name).or_else(|| called.get(photo_of(name)?));
+    wanted.find_map(|name| match of(name)?.as_slice() {
         [first, second, ..] => Some((name, [*first, *second])),
         _ => None,
     })

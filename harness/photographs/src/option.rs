@@ -7,6 +7,9 @@ use calibench_model::boards::{Board, KINDS};
 
 use crate::Chessboard;
 
+/// What is asked for where nothing is known.
+pub const UNKNOWN: &str = "unknown";
+
 /// The board of a text: `9x6:25` for a chessboard, a kind with its counts and lengths, or a target file of Kalibr's (`.yaml`), which `of_file` reads.
 ///
 /// # Errors
@@ -18,6 +21,9 @@ pub fn board_of<E: Display>(text: &str, of_file: impl Fn(&Path) -> Result<Board,
     }
     if text.starts_with(|first: char| first.is_ascii_digit()) {
         return text.parse::<Chessboard>().map(Board::from);
+    }
+    if text == UNKNOWN {
+        return Err(format!("`{UNKNOWN}`: `detect --board {UNKNOWN}` names the board that is there; expected a board"));
     }
     text.parse::<Board>().map_err(|error| {
         let kinds = KINDS.map(|(kind, form, _)| format!("{kind}:{form}")).join(", ");
@@ -41,6 +47,7 @@ mod tests {
             ("9x6", "is no chessboard"),
             ("mine", "is no kind of board: expected one of chessboard"),
             ("rings:12", "no count"),
+            ("unknown", "`detect --board unknown` names the board that is there"),
             ("missing.yaml", "missing.yaml: no such file"),
         ] {
             let error = board_of(text).unwrap_err();

@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use calibench_exchange::Outcome;
 use calibench_measure::{Configured, Operator};
+use calibench_model::views::photo_of;
 use calibench_model::{Covariance, Image, Measurement, PixelPoint, Points, Rejection, Start, stop};
 use rayon::prelude::*;
 
@@ -175,7 +176,9 @@ pub fn photos_of(points: &Points, photos: &[PathBuf]) -> Result<Vec<Option<usize
     }
     let by_name: HashMap<&str, usize> = called.iter().enumerate().map(|(photo, name)| (name.as_str(), photo)).collect();
     let by_path: HashMap<&Path, usize> = photos.iter().enumerate().map(|(photo, path)| (path.as_path(), photo)).collect();
-    let of = |image: &str| by_name.get(image).or_else(|| by_path.get(Path::new(image))).copied();
+    let whole = |image: &str| by_name.get(image).or_else(|| by_path.get(Path::new(image))).copied();
+    // One of several boards in a photograph.
+    let of = |image: &str| whole(image).or_else(|| whole(photo_of(image)?));
     let found: Vec<Option<usize>> = points.images().iter().map(of).collect();
     match (points.images().iter().next(), called.first()) {
         (Some(named), Some(called)) if found.iter().all(Option::is_none) => {
@@ -209,6 +212,12 @@ mod tests {
         let alike = ["x/a.png", "y/a.png"].map(PathBuf::from);
         assert!(error(&["a.png"], &alike).starts_with("two photographs are called a.png"));
         assert_eq!(photos_of(&points(&["y/a.png"]), &alike).unwrap(), [Some(1)]);
+        // Views of several boards in a photograph.
+        let views = ["a.png#1", "x/b.png#2", "a.png#12", "a.png#x", "c.png#1"];
+        assert_eq!(photos_of(&points(&views), &photos).unwrap(), [Some(0), Some(1), Some(0), None, None]);
+        assert!(error(&["a.png#1"], &alike).starts_with("two photographs are called a.png"));
+        let odd = ["x/a#1.png", "x/a#1.png#2"].map(PathBuf::from);
+        assert_eq!(photos_of(&points(&["a#1.png", "a#1.png#2", "a#1.png#3"]), &odd).unwrap(), [Some(0), Some(1), Some(0)]);
     }
 
     /// Squares of 14 px whose grey values no two corners share, and a start half a pixel beside each corner: row by row.

@@ -34,6 +34,8 @@ pub struct Declaration {
     pub seconds: f64,
     /// How much memory it may have, bytes.
     pub memory: u64,
+    /// The environment that its program and libraries are in: a folder with `bin`, by its name among those of the league; `None` for the system's own.
+    pub environment: Option<String>,
 }
 
 /// How a plug-in is asked.
@@ -111,30 +113,44 @@ const SECONDS: f64 = 30.0;
 /// How much memory it may have unless its file says otherwise.
 const MEMORY: &str = "2 GB";
 
+/// What a program may take.
+pub(crate) struct Limits {
+    /// For a question, s.
+    pub(crate) seconds: f64,
+    /// Bytes.
+    pub(crate) memory: u64,
+}
+
+impl Limits {
+    /// Those that a file states, or the usual ones; mistakes are added to `problems`.
+    pub(crate) fn checked(seconds: Option<&Spanned<f64>>, memory: Option<&Spanned<String>>, problems: &mut Vec<Problem>) -> Self {
+        let limit = seconds.map_or(SECONDS, |seconds| *seconds.get_ref());
+        if let Some(seconds) = seconds.filter(|_| !(limit > 0.0 && limit <= 86_400.0)) {
+            problems.push(Problem::new(seconds.span(), format!("expected seconds from more than 0 to 86400, found {limit}")));
+        }
+        let text = memory.map_or(MEMORY, |memory| memory.get_ref().as_str());
+        let bytes = bytes_of(text).unwrap_or_else(|| {
+            let message = format!("`{text}` is no memory: expected as in \"2 GB\" or \"500 MB\"");
+            problems.push(Problem::new(memory.map_or(0..0, Spanned::span), message));
+            0
+        });
+        Self { seconds: limit, memory: bytes }
+    }
+}
+
 /// The checked declaration of `file`; mistakes are added to `problems`.
 pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
     let before = problems.len();
     problems.extend(no_name(&wire.name));
+    problems.extend(no_program(&wire.command));
+    let Limits { seconds, memory } = Limits::checked(wire.seconds.as_ref(), wire.memory.as_ref(), problems);
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
-    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, outwards, seconds, memory } =
-        wire;
-    if command.as_ref().first().is_none_or(String::is_empty) {
-        wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
-    }
+    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, outwards, .. } = wire;
     let mode = mode_of(mode.as_ref(), version).unwrap_or_else(|(span, message)| {
         wrong(span, message);
         Mode::Stream
     });
     let starts = starts::checked(&starts::Wire { starts, radius, boards, origin, outwards }, &mut wrong);
-    let limit = seconds.as_ref().map_or(SECONDS, |seconds| *seconds.as_ref());
-    if let Some(seconds) = seconds.filter(|_| !(limit > 0.0 && limit <= 86_400.0)) {
-        wrong(seconds.span(), format!("expected seconds from more than 0 to 86400, found {limit}"));
-    }
-    let bytes = memory.as_ref().map_or(MEMORY, |memory| memory.as_ref().as_str());
-    let bytes = bytes_of(bytes).unwrap_or_else(|| {
-        wrong(memory.as_ref().map_or(0..0, Spanned::span), format!("`{bytes}` is no memory: expected as in \"2 GB\" or \"500 MB\""));
-        0
-    });
     let mut declared = Vec::new();
     for (key, parameter) in parameters {
         match parameter_of(&key, parameter.as_ref()) {
@@ -151,8 +167,9 @@ pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Op
         parameters: declared,
         grey: image,
         starts,
-        seconds: limit,
-        memory: bytes,
+        seconds,
+        memory,
+        environment: None,
     })
 }
 
@@ -168,6 +185,12 @@ fn mode_of(mode: Option<&Spanned<String>>, version: Option<Spanned<String>>) -> 
             Err((span, format!("mode `{other}` is not known: expected \"stream\" or \"folder\"")))
         }
     }
+}
+
+/// What is wrong with a command, if it names no program.
+pub(crate) fn no_program(command: &Spanned<Vec<String>>) -> Option<Problem> {
+    let message = "expected the program and its arguments, as in [\"python3\", \"mine.py\"]";
+    command.get_ref().first().is_none_or(String::is_empty).then(|| Problem::new(command.span(), message.to_owned()))
 }
 
 /// What is wrong with the name of a method, if it is none.

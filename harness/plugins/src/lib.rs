@@ -6,6 +6,7 @@
 
 mod answer;
 mod boards;
+mod calibrator;
 mod confine;
 mod conformance;
 mod declaration;
@@ -23,11 +24,12 @@ mod request;
 mod starts;
 mod told;
 
+pub use calibrator::{CalibratorDeclaration, CalibratorProgram, Said, Unanswered};
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
 pub use declaration::{Declaration, Grey, Mode, is_name};
 pub use error::PluginError;
-pub use file::{Declared, load, parse};
+pub use file::{Declared, calibrators, load, parse};
 pub use method::method;
 pub use program::Launcher;
 pub use recorded::{Images, Origin, Positions, Recording};

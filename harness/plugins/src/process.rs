@@ -246,6 +246,13 @@ impl Process {
         Fault::new(Rejection::Ended, how + &self.said())
     }
 
+    /// The most memory that it has had in use so far, MB; `None` where the system does not tell.
+    pub fn peak_mb(&self) -> Option<f64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+        line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok().map(|kilobytes| kilobytes * 1.024e-3)
+    }
+
     /// The last line that it said on standard error.
     fn said(&self) -> String {
         let text = String::from_utf8_lossy(&self.tail);

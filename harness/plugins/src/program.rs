@@ -51,6 +51,7 @@ pub struct Program {
     /// A hash of its files.
     pub files: String,
     folder: PathBuf,
+    environment: Option<PathBuf>,
     launcher: Launcher,
     idle: Mutex<BTreeMap<Vec<u8>, Vec<Started>>>,
     /// What is to be told of it.
@@ -80,10 +81,15 @@ impl Program {
     pub fn new(declaration: Declaration, folder: &Path, launcher: Launcher) -> Self {
         // It is started somewhere else.
         let folder = &folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let environment = declaration.environment.as_ref().map(|name| environments(&launcher).join(name));
         let beside = |word: &String| Some(folder.join(word)).filter(|path| path.is_file());
         let found: Vec<Option<PathBuf>> = declaration.command.iter().map(beside).collect();
         let command = declaration.command.iter().zip(&found);
-        let command = command.map(|(word, file)| file.as_ref().map_or_else(|| word.into(), |file| file.clone().into_os_string())).collect();
+        let mut command: Vec<OsString> =
+            command.map(|(word, file)| file.as_ref().map_or_else(|| word.into(), |file| file.clone().into_os_string())).collect();
+        if let (Some(environment), Some(None)) = (&environment, found.first()) {
+            command[0] = environment.join("bin").join(&command[0]).into();
+        }
         let mut hasher = blake3::Hasher::new();
         for (word, file) in declaration.command.iter().zip(&found) {
             hasher.update(word.as_bytes()).update(&[0]);
@@ -96,6 +102,7 @@ impl Program {
             command,
             files,
             folder: folder.to_owned(),
+            environment,
             launcher,
             idle: Mutex::default(),
             told: Teller::default(),
@@ -110,14 +117,23 @@ impl Program {
 
     /// A process that has been told the parameters: an idle one, or a new one.
     pub fn process(&self, settings: &Settings) -> Result<Started, Fault> {
-        let greeting = greeting(settings.iter());
-        let idle = locked(&self.idle).get_mut(&greeting).and_then(Vec::pop);
-        idle.map_or_else(|| self.start(&greeting), Ok)
+        self.greeted(&greeting(settings.iter()))
+    }
+
+    /// A process that has been greeted so: an idle one, or a new one.
+    pub fn greeted(&self, greeting: &[u8]) -> Result<Started, Fault> {
+        let idle = locked(&self.idle).get_mut(greeting).and_then(Vec::pop);
+        idle.map_or_else(|| self.start(greeting), Ok)
     }
 
     /// Keeps a process that did as it should.
     pub fn keep(&self, settings: &Settings, started: Started) {
-        locked(&self.idle).entry(greeting(settings.iter())).or_default().push(started);
+        self.keep_greeted(greeting(settings.iter()), started);
+    }
+
+    /// Keeps a process that was greeted so and did as it should.
+    pub fn keep_greeted(&self, greeting: Vec<u8>, started: Started) {
+        locked(&self.idle).entry(greeting).or_default().push(started);
     }
 
     /// Starts the command, which restricts itself.
@@ -149,6 +165,11 @@ impl Program {
 
     /// Why there is no such program, if so.
     pub fn lacking(&self) -> Option<String> {
+        if let (Some(name), Some(folder)) = (&self.declaration.environment, &self.environment)
+            && !folder.join("bin").is_dir()
+        {
+            return Some(format!("there is no environment `{name}`: `just league-env {name}` makes it"));
+        }
         let program = Path::new(self.command.first()?);
         let there = if program.components().count() > 1 {
             program.is_file()
@@ -177,7 +198,7 @@ impl Program {
         let confinement = Confinement {
             scratch: whole(scratch),
             closed: self.launcher.project.as_deref().map(whole),
-            open: vec![whole(&self.folder)],
+            open: [Some(&self.folder), self.environment.as_ref()].into_iter().flatten().map(|path| whole(path)).collect(),
             memory: self.declaration.memory,
         };
         let words = match &self.launcher.confiner {
@@ -189,6 +210,14 @@ impl Program {
         // Processes run one a thread: libraries' own threads would fight for the processors.
         for threads in ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"] {
             command.env(threads, "1");
+        }
+        if let Some(environment) = &self.environment {
+            let path = std::env::var_os("PATH").unwrap_or_default();
+            let folders = std::iter::once(environment.join("bin")).chain(std::env::split_paths(&path));
+            // A folder with a colon in its name cannot stand there; the program itself is called by its whole path.
+            if let Ok(path) = std::env::join_paths(folders) {
+                command.env("PATH", path);
+            }
         }
         for (name, value) in std::env::vars_os() {
             if says_where(&name.to_string_lossy(), &value.to_string_lossy(), confinement.closed.as_deref()) {
@@ -202,6 +231,12 @@ impl Program {
     pub fn patience(&self, settings: &Settings) -> Arc<Patience> {
         locked(&self.patience).entry(greeting(settings.iter())).or_default().clone()
     }
+}
+
+/// Where the environments of calibrators are: `CALIBENCH_LEAGUE`, or `target/league` of the project.
+fn environments(launcher: &Launcher) -> PathBuf {
+    let of_project = || launcher.project.as_deref().unwrap_or(Path::new("")).join("target/league");
+    std::env::var_os("CALIBENCH_LEAGUE").map_or_else(of_project, PathBuf::from)
 }
 
 /// Whether a variable says where calibench was called, or with what. `PATH` stays: programs are found by it.

@@ -47,6 +47,11 @@ pub fn greeting<'p>(parameters: impl Iterator<Item = (&'p str, f64)>) -> Vec<u8>
     line(&json!({ "calibench": PROTOCOL, "parameters": parameters }))
 }
 
+/// The first line to a program that calibrates.
+pub fn calibrations_greeting() -> Vec<u8> {
+    line(&json!({ "calibench": PROTOCOL, "asks": "calibrations" }))
+}
+
 /// A whole number as one: many a language tells 11 from 11.0.
 fn plain(value: f64) -> Value {
     if value.fract() == 0.0 && value.abs() < 1e15 { json!(value as i64) } else { json!(value) }

@@ -1,6 +1,7 @@
 //! Where a project is and what belongs to it: scenarios, methods with the plug-ins, folders of records and reports. What the command line and other languages
 //! share.
 
+mod answered;
 mod error;
 mod methods;
 mod project;
@@ -8,6 +9,7 @@ mod reports;
 mod scenarios;
 mod toolbox;
 
+pub use answered::answered_camera;
 pub use error::ProjectError;
 pub use methods::Pictured;
 pub use project::{Project, here};

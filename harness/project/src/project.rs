@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use calibench_calibrators::{Listed, own, programs};
 use calibench_files::folder::is_project;
 use calibench_measure::Registry;
-use calibench_plugins::{Launcher, load};
+use calibench_plugins::{Launcher, PluginError, calibrators, load};
 use calibench_report::Places;
+use calibench_run::Tools;
 use calibench_scenario::data::data_folder;
 
-use crate::{ProjectError, Toolbox};
+use crate::{ProjectError, Toolbox, answered_camera};
 
 /// The project's folder of plug-ins.
 const PLUGINS: &str = "methods";
@@ -28,12 +30,14 @@ pub struct Project<'a> {
     pub confiner: fn() -> Option<Vec<OsString>>,
     /// All methods, once somebody asked for them: empty at first.
     pub methods: OnceLock<Registry>,
+    /// All calibrators, alike.
+    pub calibrators: OnceLock<Vec<Listed>>,
 }
 
 impl<'a> Project<'a> {
     /// The project around the current folder, with plug-ins started as they are.
     pub const fn new(toolbox: &'a Toolbox) -> Self {
-        Self { root: None, plugins: None, toolbox, confiner: || None, methods: OnceLock::new() }
+        Self { root: None, plugins: None, toolbox, confiner: || None, methods: OnceLock::new(), calibrators: OnceLock::new() }
     }
 }
 
@@ -79,13 +83,45 @@ impl Project<'_> {
         if let Some(methods) = self.methods.get() {
             return Ok(methods);
         }
-        let own = self.folder()?.map(|root| root.join(PLUGINS)).filter(|folder| folder.is_dir());
         let builtin = self.toolbox.registry.clone();
-        let methods = match self.plugins.clone().or(own) {
+        let methods = match self.plugins()? {
             Some(folder) => load(&folder, builtin, &self.launcher()?)?,
             None => builtin,
         };
         Ok(self.methods.get_or_init(|| methods))
+    }
+
+    /// The folder of plug-ins, if there is one.
+    fn plugins(&self) -> Result<Option<PathBuf>, ProjectError> {
+        let own = self.folder()?.map(|root| root.join(PLUGINS)).filter(|folder| folder.is_dir());
+        Ok(self.plugins.clone().or(own))
+    }
+
+    /// All calibrators: our own, and those of the folder of plug-ins.
+    ///
+    /// # Errors
+    /// As [`Self::registry`]; one that is called as one of ours.
+    pub fn calibrators(&self) -> Result<&[Listed], ProjectError> {
+        if let Some(all) = self.calibrators.get() {
+            return Ok(all);
+        }
+        let mut all = own();
+        if let Some(folder) = self.plugins()? {
+            let others = programs(calibrators(&folder, &self.launcher()?)?, answered_camera);
+            if let Some(taken) = others.iter().find(|other| all.iter().any(|own| own.name == other.name)) {
+                return Err(PluginError::Taken { path: folder, name: taken.name.clone() }.into());
+            }
+            all.extend(others);
+        }
+        Ok(self.calibrators.get_or_init(|| all))
+    }
+
+    /// What a run has beside its methods.
+    ///
+    /// # Errors
+    /// As [`Self::calibrators`].
+    pub fn tools(&self) -> Result<Tools<'_>, ProjectError> {
+        Ok(Tools { calibrators: self.calibrators()?, ..self.toolbox.tools() })
     }
 
     /// The methods among which the one that `text` names is: those of this build, if it is one of them. Plug-ins are looked for where it is none, and where the user
@@ -120,9 +156,9 @@ impl Project<'_> {
     /// As [`Self::folder`].
     pub fn places(&self) -> Result<Places, ProjectError> {
         let root = self.base()?;
-        let [records, published, cameras, reports] =
-            ["records", "reference/published", "reference/cameras", "reports"].map(|folder| root.join(folder));
-        Ok(Places { records, published, cameras, reports })
+        let [records, published, cameras, league, reports] =
+            ["records", "reference/published", "reference/cameras", "reference/league", "reports"].map(|folder| root.join(folder));
+        Ok(Places { records, published, cameras, league, reports })
     }
 
     /// The code's revision for records: that of the checkout, or the version of the program outside of one.

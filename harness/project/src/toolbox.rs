@@ -20,8 +20,8 @@ pub struct Toolbox {
 }
 
 impl Toolbox {
-    /// What it has beside its methods.
+    /// What it has beside its methods; calibrators are the project's ([`crate::Project::tools`]).
     pub fn tools(&self) -> Tools<'_> {
-        Tools { detector: self.detector.as_deref(), solver: self.solver.as_deref() }
+        Tools { detector: self.detector.as_deref(), solver: self.solver.as_deref(), calibrators: &[] }
     }
 }

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union, final
+from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ __all__ = [
     "Difference",
     "DoubtWarning",
     "Error",
+    "Identified",
     "InputError",
     "Judgement",
     "LossWarning",
@@ -33,7 +34,9 @@ __all__ = [
     "confine",
     "detect",
     "diff",
+    "identify",
     "judge",
+    "league",
     "measure",
     "merge",
     "methods",
@@ -161,6 +164,23 @@ class Camera:
     @property
     def notes(self) -> List[str]:
         """What is to be known of how it was read."""
+
+@final
+class Identified:
+    """What board is in an image of which nothing is known."""
+
+    @property
+    def board(self) -> Optional[str]:
+        """The words by which it is found in this image, its lengths in sides of a square or a marker, or in distances of circles; None of markers by themselves."""
+    @property
+    def words(self) -> str:
+        """Kind, counts, dictionary and pattern."""
+    @property
+    def points(self) -> int:
+        """How many of its points are seen."""
+    @property
+    def markers(self) -> List[int]:
+        """The ids of its markers, ascending; of boards without markers none."""
 
 @final
 class Targets:
@@ -368,10 +388,33 @@ def measure(
     be off, px^2.
     """
 
+@overload
 def detect(
-    image: NDArray[Any], board: Optional[str] = None, *, testfield: Optional[str] = None, classifier: str = "modern", root: Optional[_Path] = None
+    image: NDArray[Any],
+    board: Optional[str] = None,
+    *,
+    all: Literal[False] = False,
+    testfield: Optional[str] = None,
+    classifier: str = "modern",
+    root: Optional[_Path] = None,
 ) -> Optional[Targets]:
-    """Find a board (`9x6`; `charuco:8x5:30:21:DICT_4X4_50`, ...) or the coded field of a scenario; None where it is not seen."""
+    """Find a board (`9x6`; `charuco:8x5:30:21:DICT_4X4_50`, ...) or the coded field of a scenario; None where it is not seen.
+
+    With `all=True` each of several such boards, from the left, in a list.
+    """
+
+@overload
+def detect(
+    image: NDArray[Any],
+    board: Optional[str] = None,
+    *,
+    all: Literal[True],
+    testfield: Optional[str] = None,
+    classifier: str = "modern",
+    root: Optional[_Path] = None,
+) -> List[Targets]: ...
+def identify(image: NDArray[Any]) -> Optional[Identified]:
+    """What board is in an image of which nothing is known; None where none is that is known: as `calibench detect --board unknown` says."""
 
 def board(text: str) -> List[Tuple[str, List[float]]]:
     """Names and object coordinates of a board's points, as of 9x6:25: X to the right, Y upwards, Z towards the viewer."""
@@ -392,7 +435,7 @@ def calibrate(
     sigma: Optional[float] = None,
     covariances: bool = False,
     huber: Optional[float] = None,
-    snoop: bool = False,
+    snoop: Optional[bool] = None,
     compare: Optional[Sequence[Sequence[str]]] = None,
     limit: Optional[float] = None,
 ) -> Calibration:
@@ -400,7 +443,8 @@ def calibrate(
 
     `xy` has one array for each image, with a row for each point of the board, NaN where it was not measured; what `measure`
     returned does as well, and its covariances are weights with `covariances=True`. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
-    `board_shape`, `sigma` (px), `huber`, `snoop`, `compare` and `limit` (px) are as on the command line.
+    `board_shape`, `sigma` (px), `huber`, `snoop`, `compare` and `limit` (px) are as on the command line: `snoop=False` (`--plain` there) keeps all image points,
+    `True` leaves out all that Baarda's test rejects, `None` what is wrong for itself beyond doubt.
     """
 
 def diff(
@@ -426,6 +470,27 @@ def judge(
 
     Photographs of a chessboard by their paths; or points as `calibrate` takes them, of one operator, or of several by name.
     With `camera`: whether it still holds within `margin` px.
+    """
+
+def league(
+    scenarios: Union[str, Sequence[str]],
+    calibrators: Sequence[Union[str, Callable[[Dict[str, Any]], Mapping[str, Any]]]],
+    *,
+    trials: Optional[int] = None,
+    seed: Optional[int] = None,
+    threads: Optional[int] = None,
+    root: Optional[_Path] = None,
+) -> Dict[str, Any]:
+    """Ask calibrators about the same trials of scenarios with [calibrators], and compare their cameras with the true ones.
+
+    `calibrators` are names, as `calibench list calibrators` has them, and callables. A callable gets a task and answers what
+    a program would (docs/calibrators.md), both as dicts; `status` is "calibrated" unless it says otherwise, arrays are
+    lists. What it raises has failed. Its name is `__name__`, its version `__version__`, if it has one.
+
+    A row for each calibrator, scenario and trial, as columns: `calibrator`, `system`, `version`, `scenario`, `trial`, `status`,
+    `message`, `silent` (wrong and nothing said), `left_out`, and numbers that are NaN where there are none: `frame` and `covered`
+    (distance from the true camera after the best rotation, RMS, px), `length` (error of 100 mm, RMS, mm), `stated` (px),
+    `z2` and `z2_parameters` (mean squares of errors in stated standard deviations), `rms` (px), `seconds`.
     """
 
 def run(

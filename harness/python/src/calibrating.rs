@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
-    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, MOST_TRIED, Optics, Settings, Suspected, calibrate as solve,
-    prepare, suspected,
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, Suspected,
+    calibrate as solve, prepare, suspected,
 };
 use calibench_judge::BENT;
 use calibench_model::NamedCamera;
@@ -182,7 +182,7 @@ impl Calibration {
 /// Calibrates a camera from measured points: as `calibench calibrate --points --control` does.
 #[pyfunction]
 #[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, start = None, datum = "control",
-    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = None, limit = None))]
+    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = None, compare = None, limit = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn calibrate(
     py: Python<'_>,
@@ -200,7 +200,7 @@ pub fn calibrate(
     sigma: Option<f64>,
     covariances: bool,
     huber: Option<f64>,
-    snoop: bool,
+    snoop: Option<bool>,
     compare: Option<Vec<Vec<String>>>,
     limit: Option<f64>,
 ) -> PyResult<Calibration> {
@@ -219,16 +219,12 @@ pub fn calibrate(
     let settings = Settings {
         datum: datum.parse().map_err(input)?,
         shape: if bent && board_shape == "tested" { BoardShape::Bent } else { board_shape.parse().map_err(input)? },
-        huber: positive(huber, "huber")?,
-        snoop,
+        gross: gross(positive(huber, "huber")?, snoop)?,
         sigma_px: positive(sigma, "sigma")?,
         limit_px: positive(limit, "limit")?,
         covariances,
         ..Settings::new(vec![optics])
     };
-    if snoop && huber.is_some() {
-        return Err(input("huber and snoop: one or the other"));
-    }
     let given = (points.len() <= MOST_TRIED).then(|| points.clone());
     let suspects = |found: Result<&Solved<'_>, &Unsolved>| {
         given.as_ref().map_or_else(Vec::new, |points| suspected(points, &board.control, &settings, found))
@@ -258,6 +254,20 @@ fn lens_and_board(model: Option<String>) -> (Option<String>, bool) {
     match model.as_deref().and_then(|model| model.strip_suffix(BENT)) {
         Some(lens) => (Some(lens.to_owned()), true),
         None => (model, false),
+    }
+}
+
+/// What is done about gross errors.
+///
+/// # Errors
+/// Weights for what is left out.
+fn gross(huber: Option<f64>, snoop: Option<bool>) -> PyResult<GrossErrors> {
+    match (huber, snoop) {
+        (Some(_), Some(true)) => Err(input("huber and snoop: one or the other")),
+        (Some(bound), _) => Ok(GrossErrors::Weighted(bound)),
+        (None, Some(true)) => Ok(GrossErrors::Rejected(Risk::EachPoint)),
+        (None, Some(false)) => Ok(GrossErrors::Kept),
+        (None, None) => Ok(GrossErrors::Sought),
     }
 }
 

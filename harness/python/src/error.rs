@@ -57,6 +57,9 @@ pub fn in_python(message: &str) -> String {
 
 /// An option of the command line as a keyword.
 fn keyword(option: &str) -> String {
+    if option == "plain" {
+        return "snoop=False".to_owned();
+    }
     format!("{}={}", option.replace('-', "_"), if SWITCHES.contains(&option) { "True" } else { "" })
 }
 

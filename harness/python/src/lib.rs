@@ -12,6 +12,7 @@ mod difference;
 mod error;
 mod grey;
 mod judging;
+mod league;
 mod listing;
 mod measuring;
 mod method;
@@ -21,6 +22,7 @@ mod pool;
 mod pose;
 mod rendering;
 mod reporting;
+mod restored;
 mod running;
 mod session;
 mod stopped;
@@ -39,7 +41,7 @@ mod _calibench {
     #[pymodule_export]
     use super::camera::Camera;
     #[pymodule_export]
-    use super::detecting::detect;
+    use super::detecting::{Identified, detect, identify};
     #[pymodule_export]
     use super::difference::{Difference, diff};
     #[pymodule_export]
@@ -47,19 +49,21 @@ mod _calibench {
     #[pymodule_export]
     use super::judging::{Judgement, judge};
     #[pymodule_export]
+    use super::league::league;
+    #[pymodule_export]
     use super::listing::{confine, methods, scenarios};
     #[pymodule_export]
     use super::measuring::{Measured, measure};
     #[pymodule_export]
     use super::method::add_method;
     #[pymodule_export]
-    use super::pickled::restored;
-    #[pymodule_export]
     use super::pose::Pose;
     #[pymodule_export]
     use super::rendering::{Shot, Targets, render};
     #[pymodule_export]
     use super::reporting::report;
+    #[pymodule_export]
+    use super::restored::restored;
     #[pymodule_export]
     use super::running::{Records, merge, run, run_part, shipped};
 }

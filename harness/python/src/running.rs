@@ -161,7 +161,7 @@ fn ran(
     revision: &str,
 ) -> PyResult<Ran> {
     let methods = methods_of(py, here, &changes.methods, Pictured::Renders)?;
-    let (registry, data, tools) = (here.registry().map_err(project)?, here.data().map_err(project)?, here.toolbox.tools());
+    let (registry, data, tools) = (here.registry().map_err(project)?, here.data().map_err(project)?, here.tools().map_err(project)?);
     let threads = Stoppable::on(py, threads)?;
     let (trials, seed) = (changes.trials, changes.seed);
     let order = Order { scenario, methods: &methods, trials, seed, tools, data, reuse: None, registry, stop: Some(threads.flag()) };

@@ -86,9 +86,32 @@ def test_opencv_finds_a_grid_of_circles_of_ours():
         assert off.max() < 0.5
 
 
+MARKED = [("30@r7c1", "circles:10x7:38:20:30@r7c1"), ("20/8@r2c2,r5c2,r5c8", "circles:10x7:38:20:20/8@r2c2,r5c2,r5c8")]
+
+
+@pytest.mark.parametrize(("marks", "word"), MARKED)
+@pytest.mark.parametrize("light", [False, True])
+def test_circles_with_an_origin_are_found_by_name_and_opencv_reads_them(tmp_path, marks, word, light):
+    """Dark and light, in all turns; findCirclesGrid, which needs the light ones inverted, has every centre, too, and no names; rings it has not."""
+    levels = "\npaper = 0.05\nink = 0.85" if light else ""
+    marked = scenario(tmp_path, "circles", lambda text: text.replace("diameter = 20", f'diameter = 20\nmarks = ["{marks}"]{levels}'))
+    for shot in cb.render(marked, root=ROOT):
+        found = cb.detect(shot.image, word)
+        assert found is not None and sorted(found.target) == sorted(shot.truth.target), shot.name
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        assert max(np.linalg.norm(xy - truth[name]) for name, xy in zip(found.target, found.xy)) < 1.5, shot.name
+        if "/" in marks:
+            continue
+        grey = eight_bits(1.0 - np.asarray(shot.image) if light else shot.image)
+        seen, centres = cv2.findCirclesGrid(grey, (10, 7), flags=cv2.CALIB_CB_SYMMETRIC_GRID | cv2.CALIB_CB_CLUSTERING)
+        assert seen, shot.name
+        assert np.linalg.norm(centres.reshape(-1, 1, 2) - shot.truth.xy[None], axis=2).min(axis=1).max() < 1.0
+
+
 WORDS = {
     "charuco": "charuco:10x7:38:26.6:DICT_4X4_50",
     "aprilgrid": "aprilgrid:6x4:48:0.3",
+    "gridboard": "gridboard:6x4:48:14.4:DICT_6X6_250",
     "circles": "circles:10x7:38:20",
     "rings": "rings:12:10x7:38:10",
     "puzzle": "puzzle:19x13:20:100,200",
@@ -124,24 +147,111 @@ def test_another_board_is_refused(tmp_path):
     assert cb.detect(shot.image, "charuco:10x6:38:26.6:DICT_4X4_50:legacy") is None
 
 
+def seen_aside(drawn, rim, corners_at):
+    """What OpenCV drew, in perspective with a grey border; and where its pixels go."""
+    drawn = cv2.copyMakeBorder(drawn, rim, rim, rim, rim, cv2.BORDER_CONSTANT, value=255)
+    height, width = drawn.shape
+    corners = np.array([[rim, rim], [width - rim, rim], [width - rim, height - rim], [rim, height - rim]], np.float32)
+    map_ = cv2.getPerspectiveTransform(corners, np.array(corners_at, np.float32))
+    size = tuple(np.max(corners_at, axis=0).astype(int) + 150)
+    return cv2.GaussianBlur(cv2.warpPerspective(drawn, map_, size, borderValue=120), (0, 0), 0.8), map_
+
+
 @pytest.mark.parametrize("legacy", [False, True])
-def test_a_board_that_opencv_drew_is_found(legacy):
-    board = aruco.CharucoBoard((8, 6), 30, 21, opencv_s("DICT_5X5_100"))
+@pytest.mark.parametrize("size", [(8, 6), (5, 7), (7, 5), (3, 8), (9, 4), (4, 9), (6, 6), (7, 7), (12, 3)])
+def test_a_board_that_opencv_drew_is_found(size, legacy):
+    """More rows than columns or fewer, even or odd, of both orders: with an even number of rows each is refused as the other, with an odd one they are one."""
+    columns, rows = size
+    board = aruco.CharucoBoard(size, 30, 21, opencv_s("DICT_5X5_100"))
     board.setLegacyPattern(legacy)
-    drawn = cv2.copyMakeBorder(board.generateImage((800, 600)), 60, 60, 60, 60, cv2.BORDER_CONSTANT, value=255)
-    corners = np.array([[60, 60], [860, 60], [860, 660], [60, 660]], np.float32)
-    seen = np.array([[150, 120], [980, 60], [1050, 760], [90, 690]], np.float32)
-    map_ = cv2.getPerspectiveTransform(corners, seen)
-    image = cv2.GaussianBlur(cv2.warpPerspective(drawn, map_, (1200, 850), borderValue=120), (0, 0), 0.8)
-    word = "charuco:8x6:30:21:DICT_5X5_100" + (":legacy" if legacy else "")
+    drawn = board.generateImage((100 * columns, 100 * rows))
+    ends = np.array([[0.1, 0.05], [0.95, 0.0], [1.0, 0.95], [0.0, 1.0]]) * [100 * columns, 100 * rows] + 80
+    image, map_ = seen_aside(drawn, 60, ends)
+    word = f"charuco:{columns}x{rows}:30:21:DICT_5X5_100" + (":legacy" if legacy else "")
     found = cb.detect(image, word)
-    assert found is not None and len(found.target) == 35
-    at = {name: xyz for name, xyz in cb.board(word)}
+    assert found is not None and len(found.target) == (columns - 1) * (rows - 1)
+    at = dict(cb.board(word))
     # Edges of squares of 100 px lie between pixels.
     plane = np.array([[60 + 100 + at[name][0] / 30 * 100 - 0.5, 60 + 100 - at[name][1] / 30 * 100 - 0.5] for name in found.target])
     expected = cv2.perspectiveTransform(plane[None].astype(np.float64), map_)[0]
     assert np.abs(found.xy - expected).max() < 1.5
-    assert cb.detect(image, "charuco:8x6:30:21:DICT_5X5_100" + ("" if legacy else ":legacy")) is None
+    # OpenCV's ids of the corners, and their places, are ours.
+    for place, xyz in enumerate(board.getChessboardCorners()):
+        name = f"r{place // (columns - 1) + 1}c{place % (columns - 1) + 1}"
+        assert np.allclose([at[name][0] + 30, 30 - at[name][1]], xyz[:2]), name
+    other = cb.detect(image, f"charuco:{columns}x{rows}:30:21:DICT_5X5_100" + ("" if legacy else ":legacy"))
+    assert (other is None) == (rows % 2 == 0)
+
+
+#: It knows the newer order alone.
+CALIB_TARGETS = '[[method]]\nname = "calib_targets"\n'
+
+
+@pytest.mark.parametrize("legacy", [False, True])
+@pytest.mark.parametrize("size", [(5, 6), (6, 5), (9, 4), (4, 7)])
+def test_opencv_reads_charuco_boards_of_ours_of_other_counts(tmp_path, size, legacy):
+    columns, rows = size
+    change = lambda text: text.replace("rows = 7", f"rows = {rows}\nlegacy = {str(legacy).lower()}").replace("columns = 10", f"columns = {columns}").replace(CALIB_TARGETS, "")
+    board = aruco.CharucoBoard(size, 38, 26.6, opencv_s("DICT_4X4_50"))
+    board.setLegacyPattern(legacy)
+    for shot in cb.render(scenario(tmp_path, "charuco", change), root=ROOT)[:4]:
+        corners, ids, _, _ = aruco.CharucoDetector(board).detectBoard(eight_bits(shot.image))
+        assert ids is not None and len(ids) == (columns - 1) * (rows - 1) == len(shot.truth.target), shot.name
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        theirs = [truth[f"r{i // (columns - 1) + 1}c{i % (columns - 1) + 1}"] for i in ids.ravel()]
+        # Half a pixel is OpenCV's own, up to 4.13.
+        assert np.linalg.norm(corners.reshape(-1, 2) - theirs, axis=1).max() < 1.5
+
+
+def opencv_s_gridboard(columns, rows, marker, separation, dictionary, first=0):
+    return aruco.GridBoard((columns, rows), marker, separation, opencv_s(dictionary), np.arange(first, first + columns * rows))
+
+
+def test_a_gridboard_is_opencv_s():
+    """Names, corners, their order and places are those of `cv::aruco::GridBoard`; its y points down, ours up."""
+    for columns, rows, marker, separation, first in [(5, 7, 40, 10, 0), (3, 2, 0.05, 0.02, 11), (1, 4, 30, 30, 5), (6, 1, 30, 4, 0)]:
+        theirs = opencv_s_gridboard(columns, rows, marker, separation, "DICT_6X6_250", first)
+        ours = dict(cb.board(f"gridboard:{columns}x{rows}:{marker}:{separation}:DICT_6X6_250:{first}"))
+        assert len(ours) == 4 * len(theirs.getIds()) == 4 * columns * rows
+        for marker_id, corners in zip(theirs.getIds().ravel(), theirs.getObjPoints()):
+            for k, (x, y, z) in enumerate(corners):
+                assert np.allclose(ours[f"t{marker_id}c{k}"], (x, -y, z), atol=1e-4), (marker_id, k)
+
+
+def test_opencv_reads_a_gridboard_of_ours_in_all_rotations(tmp_path):
+    """Every marker with its corners in order; its own matchImagePoints has the object points that ours have."""
+    parameters = aruco.DetectorParameters()
+    parameters.cornerRefinementMethod = aruco.CORNER_REFINE_SUBPIX
+    board = opencv_s_gridboard(6, 4, 48, 14.4, "DICT_6X6_250")
+    detector = aruco.ArucoDetector(opencv_s("DICT_6X6_250"), parameters)
+    for shot in cb.render(scenario(tmp_path, "gridboard"), root=ROOT):
+        corners, ids, _ = detector.detectMarkers(eight_bits(shot.image))
+        assert sorted(ids.ravel()) == list(range(24)), shot.name
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        ours = np.array([[truth[f"t{marker}c{k}"] for k in range(4)] for marker in ids.ravel()])
+        assert np.abs(np.array(corners).reshape(-1, 4, 2) - ours).max() < 1.0, shot.name
+        object_points, image_points = board.matchImagePoints(corners, ids)
+        at = dict(cb.board(WORDS["gridboard"]))
+        own = np.array([at[f"t{marker}c{k}"] for marker in ids.ravel() for k in range(4)])
+        assert np.allclose(object_points.reshape(-1, 3) * [1, -1, 1], own, atol=1e-4)
+        assert np.abs(image_points.reshape(-1, 2) - ours.reshape(-1, 2)).max() < 1.0
+
+
+@pytest.mark.parametrize(("columns", "rows", "dictionary", "first", "border"), [(5, 7, "DICT_6X6_250", 0, 1), (4, 3, "DICT_4X4_50", 30, 2)])
+def test_a_gridboard_that_opencv_drew_is_found(columns, rows, dictionary, first, border):
+    board = opencv_s_gridboard(columns, rows, 40, 20, dictionary, first)
+    pitch, rim = 120, 30
+    width, height = pitch * columns - 40, pitch * rows - 40
+    drawn = board.generateImage((width, height), marginSize=0, borderBits=border)
+    image, map_ = seen_aside(drawn, rim, [[90, 60], [width, 80], [width + 60, height + 20], [70, height + 70]])
+    word = f"gridboard:{columns}x{rows}:40:20:{dictionary}:{first}" + (":border2" if border == 2 else "")
+    found = cb.detect(image, word)
+    assert found is not None and sorted(found.target) == sorted(name for name, _ in cb.board(word))
+    at = dict(cb.board(word))
+    plane = np.array([[rim + 2 * at[name][0] - 0.5, rim - 2 * at[name][1] - 0.5] for name in found.target])
+    expected = cv2.perspectiveTransform(plane[None].astype(np.float64), map_)[0]
+    assert np.abs(found.xy - expected).max() < 1.5
+    assert cb.detect(image, word.replace(f":{columns}x{rows}:", f":{columns + 1}x{rows}:")) is None
 
 
 def test_the_aprilgrid_of_a_photograph():

@@ -106,8 +106,9 @@ def test_gross_errors_are_found_and_said(shots, measured, control):
     wrong = [xy.copy() for xy in measured]
     place = int(np.flatnonzero(~np.isnan(wrong[1][:, 0]))[3])
     wrong[1][place] += [4.0, -3.0]
-    found = calibrated(wrong, control, size=size, model="opencv5", snoop=True)
-    assert not found.used[1][place]
+    for snoop, used in [(True, False), (None, False), (False, True)]:
+        found = calibrated(wrong, control, size=size, model="opencv5", snoop=snoop)
+        assert found.used[1][place] == used
 
 
 def test_mistakes_are_named(measured, control):

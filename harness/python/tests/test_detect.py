@@ -33,6 +33,39 @@ def test_a_board_is_the_board_asked_for():
     assert cb.detect(shot.image, "8x11") is None
 
 
+@pytest.mark.parametrize("kind", ["chessboard", "charuco", "puzzle", "dotted"])
+def test_each_of_several_boards_is_found_and_without_all_it_is_said(kind):
+    shots = cb.render(f"targets/{kind}", root=ROOT)
+    image = np.hstack([shots[0].image, shots[1].image])
+    word = cb.identify(shots[0].image).board
+    with pytest.warns(cb.DoubtWarning, match="all=True takes each of them"):
+        cb.detect(image, word)
+    each = cb.detect(image, word, all=True)
+    assert [type(found) for found in each] == [cb.Targets] * 2
+    for found, shot, begins in zip(each, shots, [0.0, shots[0].image.shape[1]]):
+        place = {name: index for index, name in enumerate(found.target)}
+        assert len(place) == len(found) == len(cb.board(word))
+        alone = cb.detect(shot.image, word)
+        own = [place[name] for name in alone.target]
+        # What is beside a board moves no point of it.
+        assert np.abs(found.xy[own] - [begins, 0.0] - alone.xy).max() < 0.1
+    assert len(cb.detect(shots[0].image, word, all=True)) == 1
+    assert cb.detect(np.full((480, 640), 0.5, np.float32), word, all=True) == []
+
+
+def test_the_board_that_is_there_is_named():
+    for kind, words, word, markers in [
+        ("chessboard", "a chessboard of 9 x 6 inner corners", "chessboard:9x6:1", []),
+        ("charuco", "a ChArUco board of 10 x 7 squares", "charuco:10x7:1:0.7:DICT_4X4_50", list(range(35))),
+    ]:
+        image = cb.render(f"targets/{kind}", root=ROOT)[0].image
+        found = cb.identify(image)
+        assert words in found.words and found.board == word and found.markers == markers
+        assert found.points == len(cb.detect(image, found.board))
+        assert found.words in repr(found) and found.board in repr(found)
+    assert cb.identify(np.full((480, 640), 0.5, np.float32)) is None
+
+
 def test_a_coded_field_is_found():
     shot = cb.render("testfields/coded", root=ROOT)[0]
     with warnings.catch_warnings():
@@ -58,6 +91,10 @@ def test_mistakes_are_named():
         cb.detect(image, testfield="testfields/coded", classifier="new", root=ROOT)
     with pytest.raises(cb.InputError, match="expected either a board"):
         cb.detect(image)
+    with pytest.raises(cb.InputError, match="all=True: expected a board"):
+        cb.detect(image, testfield="testfields/coded", all=True, root=ROOT)
+    with pytest.raises(cb.InputError, match=r"identify\(image\) names the board"):
+        cb.detect(image, "unknown")
 
 
 def test_photographs_are_judged(program, tmp_path):

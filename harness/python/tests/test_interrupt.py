@@ -84,6 +84,7 @@ WORKS = {
         "image = random.uniform(0, 1, (9000, 12000)).astype(np.float32)",
         'cb.detect(image, "circles:4x11:20")',
     ),
+    "identify": ("image = random.uniform(0, 1, (9000, 12000)).astype(np.float32)", "cb.identify(image)"),
 }
 
 WATCHED = """

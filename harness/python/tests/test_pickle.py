@@ -46,7 +46,7 @@ def examples(tmp_path_factory):
         calibration, calibration.camera, shots[0].camera, told(shots[0].camera.convert, "opencv4", accept=True),
         cb.diff(shots[0].camera, calibration.camera), judged, corners[0], missed, shots[0].pose,
         run(), run(records=tmp_path_factory.mktemp("records")), shots[0], told(cb.render, "operators/targets", root=ROOT)[0],
-        shots[0].truth, shots[0].starts, *(error("what is wrong") for error in errors),
+        shots[0].truth, shots[0].starts, cb.identify(shots[0].image), *(error("what is wrong") for error in errors),
     ]  # fmt: skip
 
 

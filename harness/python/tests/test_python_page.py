@@ -25,7 +25,8 @@ def blocks(text):
 def bring(folder):
     """What a reader has: a project, photographs of a board, a camera file."""
     cv2 = pytest.importorskip("cv2")
-    for name in ["scenarios/testfields/chessboard.toml", "scenarios/operators/targets.toml"]:
+    for name in ["testfields/chessboard.toml", "operators/targets.toml", "league/good.toml", "league/camera.yaml"]:
+        name = f"scenarios/{name}"
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, folder / name)
     (folder / "reference").mkdir()
@@ -52,6 +53,7 @@ def test_the_page_s_python_runs(tmp_path, monkeypatch, capsys):
     # The board of these photographs is bent: their camera is not the true one to the last digit, but near.
     assert cb.diff(known["camera"], known["c"].camera).rms_px < 5
     assert len(known["cameras"]) == 2 and len(known["found"].xy) == 54
+    assert len(known["rows"]["frame"]) == 10
     assert abs(known["pixels"] - [[320.0, 240.0]]).max() < 1e-9
 
 

@@ -51,6 +51,8 @@ pub enum Purpose {
     LeftOut = 63,
     /// The order in which points are shown to a method from outside.
     Shown = 64,
+    /// Which image points are in gross error or exchanged, and by how much.
+    Gross = 65,
 }
 
 /// Which stream.

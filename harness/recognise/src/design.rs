@@ -48,6 +48,10 @@ pub(crate) struct Design {
     pub squares: usize,
     /// The width of the lines, in squares.
     pub line: f64,
+    /// Its top left corner on the plate: where the middles of the outermost lines meet.
+    pub corner: PlatePoint,
+    /// The side of a square from line to line, in the plate's unit.
+    pub spacing: f64,
     /// The squares, row by row.
     pub cells: Vec<[Printed; IN_SQUARE]>,
 }
@@ -107,7 +111,8 @@ impl Design {
             sized(cell).ok_or(wrong)
         };
         let cells = cells.into_iter().enumerate().map(whole).collect::<Result<_, _>>()?;
-        Ok(Self { squares, line: grid.line / grid.spacing, cells })
+        let Grid { corner, spacing, line, .. } = grid;
+        Ok(Self { squares, line: line / spacing, corner, spacing, cells })
     }
 
     /// The area of the smallest target, in squares.

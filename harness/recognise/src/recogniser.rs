@@ -1,5 +1,6 @@
 //! From an image to labelled positions.
 
+use calibench_model::testfield::PlatePoint;
 use calibench_model::{Image, Testfield};
 
 use crate::bank::Bank;
@@ -55,6 +56,13 @@ impl Recogniser {
     #[must_use]
     pub fn with_table(self, table: ContourTable) -> Self {
         Self { table, ..self }
+    }
+
+    /// Where the middles of the grid's lines meet: (column, row) from the field's top left corner, counted from 0, and the place on the plate.
+    pub fn nodes(&self) -> impl Iterator<Item = ([usize; 2], PlatePoint)> + '_ {
+        let Design { squares, corner: [left, top], spacing, .. } = self.design;
+        let node = move |column: usize, row: usize| ([column, row], [left + column as f64 * spacing, top - row as f64 * spacing]);
+        (0..=squares).flat_map(move |row| (0..=squares).map(move |column| node(column, row)))
     }
 
     /// The field in `image`. Deterministic; whole squares only.

@@ -9,6 +9,7 @@ mod errors;
 pub mod figures;
 mod interned;
 pub mod judgement;
+pub mod league;
 mod limited;
 pub mod names;
 mod once;

@@ -7,7 +7,7 @@ use calibench_files::{FilledFolder, OutputFolder};
 use crate::canvas::write_pictures;
 use crate::composed::Composed;
 use crate::places::PAGE;
-use crate::{Places, ReportError, Written, atlas, conventions, family};
+use crate::{Places, ReportError, Written, atlas, conventions, family, league};
 
 /// The report of a family from its records and published tables; `None` where nothing of it could be measured here and an older one is there.
 ///
@@ -17,6 +17,7 @@ pub fn compose(places: &Places, family: &str, scenarios: &[String]) -> Result<Op
     match family {
         conventions::FAMILY => conventions::compose(places).map(Some),
         atlas::FAMILY => atlas::compose(places, scenarios).map(Some),
+        league::FAMILY => league::compose(places),
         _ => family::compose(places, family, scenarios),
     }
 }

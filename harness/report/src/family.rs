@@ -41,6 +41,7 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
     let sweeps: Vec<_> = all.iter().filter_map(Either::sweep).collect();
     let mut sources = Sources { tables: Vec::new(), runs: loaded.clone(), sweeps: sweeps.clone() };
     let by_name = |name: &String| loaded.iter().find(|l| l.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
+    let mut texts = Vec::new();
     for (name, table) in &tables {
         let swept = sweeps.iter().copied().find(|swept| swept.name == table.scenario);
         let section = match swept {
@@ -51,12 +52,16 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
                 published::section(table, by_name(&table.scenario)?, &beside)?
             }
         };
-        page.printed.push_str(&section.text);
+        texts.push((name, table, section.text, section.after));
         page.answers.table(name, table, &section.verdicts);
         sources.tables.push((name, table, section.figures));
         if table.is_of_adjustments() {
             page.illustrated.push(table.scenario.clone());
         }
+    }
+    for (name, table, text, after) in texts {
+        let file = places.published.join(family).join(format!("{name}.toml"));
+        page.printed.push_str(&(text + &sources.findings(&file, &published::findings(table))? + &after));
     }
     page.first_screen = sources.first_screen(&places.published.join(family))?;
     page.predictions = predictions::page(family, &places.published.join(family), &sources)?;

@@ -23,6 +23,7 @@ mod index;
 pub mod json;
 pub mod judgement;
 mod labels;
+mod league;
 mod levels;
 pub mod load;
 pub(crate) mod markdown;

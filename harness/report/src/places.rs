@@ -21,6 +21,8 @@ pub struct Places {
     pub published: PathBuf,
     /// Published cameras.
     pub cameras: PathBuf,
+    /// Tables of the league, one a calibrator.
+    pub league: PathBuf,
     /// Reports, one folder a family of scenarios.
     pub reports: PathBuf,
 }

@@ -8,7 +8,8 @@ use calibench_model::convert::Tool;
 use calibench_model::escape::markdown;
 use calibench_model::told::{Told, notes};
 use calibench_records::description::{
-    self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Target, Value, Views, operator,
+    self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Systems, Target, Value, Views,
+    operator,
 };
 use calibench_scenario::studies::network::CheckPlan;
 use calibench_scenario::studies::printed::{NETWORK, SENSOR};
@@ -122,6 +123,7 @@ fn of_views(subject: &ViewsSubject) -> description::Study {
             description::Study::Network(views, told)
         }
         Study::Blocks(plan) => description::Study::Blocks(views, in_blocks(subject, plan)),
+        Study::Calibrators(plan) => description::Study::Calibrators(views, Systems { model: plan.model.clone(), sigma_px: plan.sigma_px }),
         Study::Transfer { .. } => description::Study::Transfer(views),
     }
 }

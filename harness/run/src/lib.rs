@@ -7,6 +7,7 @@ pub mod description;
 mod detection;
 mod error;
 pub mod judgement;
+pub mod league;
 mod made;
 mod measured;
 mod order;

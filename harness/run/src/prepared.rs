@@ -6,7 +6,7 @@ use calibench_measure::Sought;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
-use calibench_scenario::{Scenario, ViewsSubject};
+use calibench_scenario::{Recognition, Scenario, ViewsSubject};
 use calibench_synth::bound::Work;
 use calibench_synth::raster::{Outlined, Picture, Renderer};
 use calibench_synth::sensor::Exposure;
@@ -40,6 +40,8 @@ pub struct PreparedView<'a> {
     pub picture: Picture,
     /// The truth about each target of the field.
     pub truth: Vec<TargetTruth>,
+    /// Where the lines of a field that is to be recognised meet: (column, row) from its top left corner, and the place, px; those in the frame.
+    pub nodes: Vec<([usize; 2], PixelPoint)>,
     /// The bound of each target that is measured.
     pub(super) bounds: Vec<BySet>,
     pub(super) name: Arc<str>,
@@ -91,7 +93,8 @@ impl<'a> Prepared<'a> {
                 _ => BySet::new(),
             };
             let bounds = subject.field.targets.par_iter().zip(&truth).map_init(Work::default, bound).collect();
-            Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into(), light: OnceLock::new() })
+            let nodes = subject.recognition.iter().flat_map(|plan| nodes(plan, &view)).collect();
+            Ok(PreparedView { station, picture, truth, nodes, bounds, name: station.name.as_str().into(), light: OnceLock::new() })
         };
         // The first station's error is the one that is said, whichever comes first.
         let views = stations.par_iter().map(view).collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, RunError>>()?;
@@ -130,6 +133,19 @@ impl<'a> Prepared<'a> {
     pub fn is_deep(&self) -> bool {
         self.subject.imaging.is_deep()
     }
+}
+
+/// Where the lines of the field meet in the frame of `view`.
+fn nodes(plan: &Recognition, view: &View<'_>) -> Vec<([usize; 2], PixelPoint)> {
+    let (Some(recogniser), [plate]) = (plan.recognisers.first(), view.field.plates.as_slice()) else { return Vec::new() };
+    let size = view.camera.size();
+    let within = |v: f64, side: u32| v >= 0.0 && v <= f64::from(side) - 1.0;
+    let seen = |(node, at)| {
+        let at = view.camera.project(view.pose.ray(&plate.point(at))).ok()?;
+        let at = view.local.map_or(at, |local| local.displaced(at));
+        (within(at.x, size.width) && within(at.y, size.height)).then_some((node, at))
+    };
+    recogniser.nodes().filter_map(seen).collect()
 }
 
 /// Renders the images of `subject`, in all trials.

@@ -1,6 +1,7 @@
 //! What a build has beside its methods.
 
 use calibench_calibrate::BoardSolver;
+use calibench_calibrators::Listed;
 use calibench_measure::BoardDetector;
 use calibench_scenario::Transfer;
 
@@ -11,6 +12,8 @@ pub struct Tools<'a> {
     pub detector: Option<&'a dyn BoardDetector>,
     /// OpenCV's calibration from a board.
     pub solver: Option<&'a dyn BoardSolver>,
+    /// Calibration systems: ours, and programs.
+    pub calibrators: &'a [Listed],
 }
 
 impl Tools<'_> {

@@ -66,7 +66,7 @@ fn of_view(plan: &Plan<'_>, prepared: &Prepared<'_>, (place, view): (usize, &Pre
             if let Some(folder) = plan.images.filter(|_| key.trial == 0) {
                 keep_steps(recognition, &image, (place, &view.station.name), folder)?;
             }
-            let Recognised { starts, counted } = recognise(recognition, &image, place, &view.truth, &prepared.subject.field);
+            let Recognised { starts, counted } = recognise(recognition, &image, (place, view), &prepared.subject.field);
             (seen.iter().map(|point| starts.get(&point.target).copied()).collect(), counted)
         }
         None => (started(prepared, &image, &seen), Counted::default()),

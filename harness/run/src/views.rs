@@ -64,6 +64,15 @@ impl<'a> Trials<'a> {
         made(&Prepared::with(subject, &subject.stations_of(key)?, key, bounds, self.prepared.renderer.clone())?)
     }
 
+    /// The points of trial `number`, of which nothing is made.
+    pub fn points(&self, plan: &Plan<'_>, number: u64) -> Result<Vec<PointResult>, RunError> {
+        let key = plan.key(number);
+        if !self.prepared.subject.changes() {
+            return Ok(pointed(plan, &self.prepared, key)?.trial.points);
+        }
+        self.changed(plan, number, |prepared| Ok(pointed(plan, prepared, key)?.trial.points))
+    }
+
     /// Measures trial `number`, and adjusts what is not adjusted apart.
     pub fn measured(&self, plan: &Plan<'_>, number: u64) -> Result<Made, RunError> {
         let (key, subject) = (plan.key(number), self.prepared.subject);
@@ -74,12 +83,16 @@ impl<'a> Trials<'a> {
     }
 }
 
-fn measured(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Made, RunError> {
-    let subject = prepared.subject;
-    let mut made = match subject.study.plan().drawn() {
+fn pointed(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Made, RunError> {
+    Ok(match prepared.subject.study.plan().drawn() {
         Some(sigmas) => draw_views(plan, prepared, sigmas, key).into(),
         None => run_views(plan, prepared, key)?,
-    };
+    })
+}
+
+fn measured(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Made, RunError> {
+    let subject = prepared.subject;
+    let mut made = pointed(plan, prepared, key)?;
     if subject.study.network().is_some() {
         made.counted.clear();
     }
@@ -94,12 +107,12 @@ fn measured(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Ma
 
 /// Whether what is made of points is made apart from them: where all of them are kept.
 pub(super) fn is_adjusted_apart(subject: &ViewsSubject) -> bool {
-    studies::of(&subject.study).is_some() && subject.keeps_points() && subject.study.plan().drawn().is_none()
+    subject.study.is_adjusted() && subject.keeps_points() && subject.study.plan().drawn().is_none()
 }
 
-/// What is made of the points of the trial of `key`: what is adjusted for the methods that `plan` asks for. Stations are the same in all trials.
+/// What is made of the points of the trial of `key`: what is adjusted for the methods that `plan` asks for.
 pub(super) fn adjusted(plan: &Plan<'_>, subject: &ViewsSubject, points: &[PointResult], key: Key<'_>) -> Vec<Calibrated> {
-    studies::of(&subject.study).map_or_else(Vec::new, |study| study.adjust(subject, points, &plan.available(), key))
+    studies::of(&subject.study, plan.tools).map_or_else(Vec::new, |study| study.adjust(subject, points, &plan.available(), key))
 }
 
 /// Coordinates that are drawn from the truth: by the hand, or with the standard deviation that the scenario gives.

@@ -1,5 +1,6 @@
 //! The `[judgement]` table: which camera models photographs are judged with.
 
+use calibench_calibrate::MODELS;
 use calibench_calibrate::choice::{HALF, ModelChoice, ModelError};
 use calibench_diagnostics::Problem;
 use schemars::JsonSchema;
@@ -39,6 +40,9 @@ pub struct JudgementWire {
     /// A camera file beside the photographs: a calibration that somebody published of them.
     #[schemars(with = "Option<String>")]
     pub published: Option<Spanned<String>>,
+    /// The camera model that `calibench league` asks whole calibration systems for: each calibrates halves of the photographs, and its camera predicts the others.
+    #[schemars(with = "Option<String>")]
+    pub league: Option<Spanned<String>>,
 }
 
 /// How photographs are judged.
@@ -56,6 +60,8 @@ pub struct JudgementPlan {
     pub splits: u64,
     /// The published camera's file name.
     pub published: Option<String>,
+    /// The camera model that whole calibration systems are asked for; `None` where they are not.
+    pub league: Option<String>,
 }
 
 /// Reads the table, for so many photographs.
@@ -93,6 +99,10 @@ pub fn read(section: Section<'_>, photographs: usize, problems: &mut Vec<Problem
             problems.push(problem.help("the file lies beside the photographs"));
         }
     }
+    if let Some(model) = wire.league.as_ref().filter(|model| !MODELS.contains(&model.get_ref().as_str())) {
+        let message = format!("`{}` is no camera model: expected one of {}", model.get_ref(), MODELS.join(", "));
+        problems.push(Problem::new(model.span(), message).nearest(model.get_ref(), MODELS));
+    }
     Some(JudgementPlan {
         models,
         side: wire.side.0,
@@ -100,5 +110,6 @@ pub fn read(section: Section<'_>, photographs: usize, problems: &mut Vec<Problem
         pitch_um: wire.pitch.map(|pitch| pitch.0),
         splits: wire.splits.map_or(SPLITS, |splits| splits.0),
         published: wire.published.map(Spanned::into_inner),
+        league: wire.league.map(Spanned::into_inner),
     })
 }

@@ -15,13 +15,15 @@ use super::pointing::{BoardPointingWire, HarrisWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::studies::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
+use super::studies::calibrators::wire::{CalibratorWire, CalibratorsWire, FaultsWire};
 use super::studies::network::wire::{CalibrationWire, CheckWire};
 use super::studies::printed::wire as printed_wire;
 use super::studies::recognition::wire::{ImagesWire, RecognitionWire};
 use super::studies::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::sweep::wire::SweepWire;
 use super::testfield::boards::wire::{
-    AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, DottedWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire,
+    AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, DottedWire, GridBoardWire, PuzzleWire, RingsWire, SheetWire,
+    TagWire, TagsWire,
 };
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
@@ -55,6 +57,9 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["blocks"] = table::<BlocksWire>();
     root["properties"]["blocks"]["properties"]["residuals"] = table::<ResidualsWire>();
     root["properties"]["block"] = list(&table::<BlockWire>());
+    root["properties"]["calibrators"] = table::<CalibratorsWire>();
+    root["properties"]["calibrators"]["properties"]["faults"] = table::<FaultsWire>();
+    root["properties"]["calibrator"] = list(&table::<CalibratorWire>());
     root["properties"]["recognition"] = table::<RecognitionWire>();
     root["properties"]["recognition"]["properties"]["images"] = list(&table::<ImagesWire>());
     root["properties"]["transfer"] = transfer();
@@ -120,6 +125,7 @@ fn testfield() -> Value {
         ("board", with(table::<BoardFieldWire>(), &table::<SheetWire>())),
         ("charuco", with(table::<CharucoWire>(), &table::<SheetWire>())),
         ("aprilgrid", with(table::<AprilGridWire>(), &table::<SheetWire>())),
+        ("gridboard", with(table::<GridBoardWire>(), &table::<SheetWire>())),
         ("circles", with(table::<CirclesWire>(), &table::<SheetWire>())),
         ("rings", with(table::<RingsWire>(), &table::<SheetWire>())),
         ("dotted", with(table::<DottedWire>(), &table::<SheetWire>())),

@@ -4,7 +4,7 @@ use calibench_diagnostics::Problem;
 use calibench_measure::Configured;
 
 use super::section::Section;
-use super::studies::{Seen, blocks, network, recognition};
+use super::studies::{Seen, blocks, calibrators, network, recognition};
 use super::subject::{Study, ViewsSubject};
 
 /// A study that has tables of its own beside those of the views.
@@ -23,7 +23,7 @@ struct Reader {
 type Tables<'i> = (Section<'i>, Vec<Section<'i>>);
 
 /// Those studies, of which a scenario has one at most. A new one is a line here.
-const READERS: [Reader; 2] = [
+const READERS: [Reader; 3] = [
     Reader {
         name: "[calibration]",
         table: ["calibration", "[calibration]"],
@@ -35,6 +35,12 @@ const READERS: [Reader; 2] = [
         table: ["blocks", "[blocks]"],
         list: Some((["block", "[[block]]"], "[blocks] says `c` and `sigma_px` of all blocks")),
         read: |(table, list), seen, methods, problems| Some(Study::Blocks(Box::new(blocks::read(table, list, seen, methods, problems)?))),
+    },
+    Reader {
+        name: "[calibrators]",
+        table: ["calibrators", "[calibrators]"],
+        list: Some((["calibrator", "[[calibrator]]"], "[calibrators] says `model`, `start_f` and `distance` for all calibrators")),
+        read: |(table, list), _, methods, problems| Some(Study::Calibrators(Box::new(calibrators::read(table, list, methods, problems)?))),
     },
 ];
 

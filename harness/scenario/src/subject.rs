@@ -16,6 +16,7 @@ use calibench_synth::stations::{Station, StationError};
 
 use crate::camera::LocalPlan;
 use crate::studies::blocks::Blocks;
+use crate::studies::calibrators::Calibrators;
 use crate::studies::network::Calibration;
 use crate::studies::printed::Printed;
 use crate::studies::recognition::{RECOGNITION, Recognition};
@@ -42,6 +43,14 @@ impl Subject {
             Self::Scene(_) | Self::Photographs(_) => &Points,
             Self::Views(subject) => subject.study.plan(),
             Self::Printed(printed) => &**printed,
+        }
+    }
+
+    /// Whether `league` runs it, and not `run --all`, where it is left to the night.
+    pub fn runs_apart(&self) -> bool {
+        match self {
+            Self::Photographs(photographs) => photographs.judgement.as_ref().is_some_and(|judgement| judgement.league.is_some()),
+            other => other.study().runs_apart(),
         }
     }
 
@@ -149,6 +158,8 @@ pub enum Study {
     Network(Box<Calibration>),
     /// Free networks are made of them.
     Blocks(Box<Blocks>),
+    /// Whole calibration systems are told them, and their cameras are scored.
+    Calibrators(Box<Calibrators>),
     /// Nothing is measured: calibrations that are made elsewhere are applied here.
     Transfer {
         /// Which, and how.
@@ -165,8 +176,14 @@ impl Study {
             Self::Points => &Points,
             Self::Network(plan) => &**plan,
             Self::Blocks(plan) => &**plan,
+            Self::Calibrators(plan) => &**plan,
             Self::Transfer { plan, .. } => &**plan,
         }
+    }
+
+    /// Whether something is made of the image points beside their scores.
+    pub fn is_adjusted(&self) -> bool {
+        !matches!(self, Self::Points | Self::Transfer { .. })
     }
 
     /// The adjustment with control, if it is one.
@@ -192,7 +209,7 @@ impl ViewsSubject {
         match self.study {
             // What is counted of all trials is in their figures.
             Study::Points => self.recognition.is_none(),
-            Study::Network(_) | Study::Blocks(_) | Study::Transfer { .. } => self.study.plan().keeps_points(),
+            Study::Network(_) | Study::Blocks(_) | Study::Calibrators(_) | Study::Transfer { .. } => self.study.plan().keeps_points(),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::project::root;
 use modules::Modules;
 
 /// Files and folders of one folder that need each other and are yet to be parted. This list only gets shorter: what two of them share moves into a third, below both.
-const KNOTS: [&str; 18] = [
+const KNOTS: [&str; 17] = [
     "adjust: normal/blocks, normal/observed_unknowns",
     "adjust: quality/robust, quality/snooping",
     "adjust: solve/elimination_order, solve/window",
@@ -25,7 +25,6 @@ const KNOTS: [&str; 18] = [
     "model: camera/measured_to_ideal, camera/photogrammetric",
     "model: convert/brown, convert/closed_form, convert/target, convert/wide_angle",
     "model: target, testfield",
-    "python: calibrating, camera, difference, judging, measuring, pickled, points, pose, rendering, running",
     "recognise: ground, recogniser, square",
     "report: canvas/recorder, canvas/series",
     "synth: raster/sharp, raster/strip",

@@ -71,3 +71,47 @@ fn an_operator_of_ones_own_is_gated() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("no method is called `shifted`"), "{}", stderr(&output));
 }
+
+/// What `init` writes for a calibrator is tried, run and gated as its README says; a program in plain Python stands in for OpenCV.
+#[cfg_attr(not(python), ignore = "no python3")]
+#[test]
+fn a_calibrator_of_ones_own_is_gated() {
+    let empty = tempfile::tempdir().unwrap();
+    let made = run(empty.path(), &["init", "mine", "--calibrator", "-q"]);
+    assert!(made.status.success(), "{}", stderr(&made));
+    let mine = empty.path().join("mine");
+    let check = || run(&mine, &["check", "--strict", "--locked", "-q"]);
+    assert!(check().status.success(), "{}", stdout(&check()));
+    let program = mine.join("methods/mine.py");
+    let text = std::fs::read_to_string(&program).unwrap();
+    let (head, rest) = text.split_once("def calibrate(task):").unwrap();
+    let (_, rest) = rest.split_once("\n\n\n").unwrap();
+    let (protocol, rest) = rest.split_once("try:\n    import cv2").unwrap();
+    let (_, rest) = rest.split_once("say({\"version\": cv2.__version__})").unwrap();
+    let with = |f: f64| {
+        let own = format!(
+            "def calibrate(task):\n    matrix = [{f}, 0, 645.5, 0, {f}, 483.5, 0, 0, 1]\n    \
+             return {{\"status\": \"calibrated\", \"camera\": CAMERA.format(size=task[\"size\"], matrix=matrix, count=5, distortion=[0.0] * 5)}}\n\n\n"
+        );
+        std::fs::write(&program, format!("{head}{own}{protocol}say({{\"version\": \"1\"}}){rest}")).unwrap();
+    };
+    with(920.0);
+    let path = mine.join("scenarios/first/board.toml");
+    let scenario = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, scenario.replace("# [[calibrator]]\n# name", "[[calibrator]]\nname")).unwrap();
+    assert_eq!(check().status.code(), Some(1), "not blessed yet: {}", stdout(&check()));
+    let blessed = run(&mine, &["bless", "--yes", "-q"]);
+    assert!(blessed.status.success() && check().status.success(), "{}{}", stderr(&blessed), stdout(&check()));
+    with(900.0);
+    let worse = run(&mine, &["check", "-q"]);
+    assert_eq!(worse.status.code(), Some(1), "{}{}", stdout(&worse), stderr(&worse));
+    assert!(stdout(&worse).contains("mine frame rms"), "{}", stdout(&worse));
+    std::fs::write(&program, "exit").unwrap();
+    let away = run(&mine, &["run", "first/board", "-q"]);
+    assert!(stderr(&away).contains("first/board: the calibrator `mine` is unavailable"), "{}", stderr(&away));
+    with(900.0);
+    for page in [["run", "first/board", "-q"].as_slice(), &["report", "-q"]] {
+        let output = run(&mine, page);
+        assert!(output.status.success(), "{page:?}: {}", stderr(&output));
+    }
+}

@@ -13,7 +13,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use calibench_adjust::{Network, Options, Solution, Variance, adjust};
+use calibench_adjust::{Network, Options, Solution, Test, Variance, adjust};
 use calibench_model::camera::CameraModel;
 
 /// Differences above which the optima are not one: of the RMS (relative), of the parameters (in standard deviations), of these themselves (relative).
@@ -24,8 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     println!(
-        "{:<44} {:>8} {:>8} {:>6} {:>10} {:>12} {:>10}",
-        "", "observed", "unknown", "steps", "solution s", "covariance s", "sigma0 px"
+        "{:<44} {:>8} {:>8} {:>6} {:>10} {:>12} {:>10} {:>10}",
+        "", "observed", "unknown", "steps", "solution s", "covariance s", "quality s", "sigma0 px"
     );
     for views in [17, 100, 1000, 5000] {
         race(&format!("board of 54 corners, {views} views"), || board(views), if views > 500 { 5 } else { 50 })?;
@@ -37,6 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let names = ["c", "x0", "y0", "k1", "k2", "p1", "p2"];
     race("36 images x 256 points, photogrammetric", || ring(networks::photogrammetric(), &names), 9)?;
     race("200 images x 5000 points, photogrammetric", || flight(networks::photogrammetric(), &names), 3)?;
+    race("1000 images x 37,746 points, OpenCV's camera", large, 1)?;
     if let Err(why) = peer {
         println!("{why}");
     }
@@ -89,14 +90,14 @@ fn same(radius: &str, found: &ceres::Found, ours: &Solution) -> Result<(), Box<d
     if differs.iter().zip(SAME).all(|(differs, most)| *differs <= most) { Ok(()) } else { Err("the optima are not one".into()) }
 }
 
-/// Solution and covariance, the best of some rounds; `None` if the problem is not asked for.
+/// Solution and covariance, the best of some rounds, printed with covariances and reliability together; `None` if the problem is not asked for.
 fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<Option<[f64; 2]>, Box<dyn Error>> {
     if std::env::args().skip(1).any(|argument| !argument.starts_with('-') && !what.contains(&argument)) {
         return Ok(None);
     }
     let network = &network();
     let options = Options::default();
-    let mut best = [f64::INFINITY; 2];
+    let mut best = [f64::INFINITY; 3];
     for _ in 0..rounds {
         let clock = Instant::now();
         black_box(adjust(black_box(network), &options)?);
@@ -107,11 +108,15 @@ fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<
         let clock = Instant::now();
         black_box(solution.covariances(Variance::Estimated)?);
         best[1] = best[1].min(clock.elapsed().as_secs_f64());
+        let clock = Instant::now();
+        black_box(solution.quality(Variance::Estimated, Test::default())?);
+        best[2] = best[2].min(clock.elapsed().as_secs_f64());
     }
     let (counts, sigma0) = (solution.counts(), solution.sigma0().unwrap_or(f64::NAN));
     let (observed, unknowns, steps) = (counts.observations(), counts.unknowns, solution.iterations());
-    println!("{what:<44} {observed:>8} {unknowns:>8} {steps:>6} {:>10.5} {:>12.5} {sigma0:>10.5}", best[0], best[1]);
-    Ok(Some(best))
+    let [solved, covariance, quality] = best;
+    println!("{what:<44} {observed:>8} {unknowns:>8} {steps:>6} {solved:>10.5} {covariance:>12.5} {quality:>10.5} {sigma0:>10.5}");
+    Ok(Some([solved, covariance]))
 }
 
 fn board(views: usize) -> Network {
@@ -134,6 +139,13 @@ fn ring(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
 fn flight(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
     let mut network = networks::flight(camera, 1);
     prepared(&mut network, names, 1.0, 0.01, 100);
+    network
+}
+
+/// 25 strips of 40 images: 767,000 image points.
+fn large() -> Network {
+    let mut network = networks::block(networks::opencv(), [40, 25], [233, 162], 1);
+    prepared(&mut network, &networks::FIVE, 1.0, 0.01, 100);
     network
 }
 

@@ -6,6 +6,7 @@
 //! | pictures of planes | interior orientation | [`interior_from_planes`] |
 //! | a data sheet, or nothing | interior orientation | [`interior_from_data_sheet`], [`interior_from_size`] |
 //! | control points and a camera | [`Resection`] | [`resect`], for three points [`poses_of_three`], for a plane [`planar_poses`], [`planar_starts`] |
+//! | control points and their rays | [`FittedPose`] | [`resect_by_rays`], [`fit_pose_to_rays`] from a pose nearby |
 //! | control points alone | camera and pose | [`direct_linear`] |
 //! | oriented pictures of a point | [`Intersection`] | [`intersect`] |
 //! | two pictures of the same points | [`RelativeOrientation`] | [`orient_relatively`] |
@@ -15,6 +16,7 @@
 //!
 //! Residuals are computed minus measured, px. A cofactor matrix is the covariance for a standard deviation of 1 px of each image coordinate.
 
+mod by_rays;
 mod consensus;
 mod coplanarity;
 mod direct_linear;
@@ -40,6 +42,7 @@ mod zhang;
 #[cfg(test)]
 mod tests;
 
+pub use by_rays::{RayControl, fit_pose_to_rays, resect_by_rays};
 pub use consensus::{Search, Tolerance};
 pub use direct_linear::{DirectLinear, direct_linear};
 pub use error::ApproximateError;

@@ -10,6 +10,8 @@ use crate::solution::Solution;
 use crate::solve::{Coupling, Eliminated, Inverse};
 use crate::state::Step;
 
+const NO_REDUNDANCY: AdjustError = AdjustError::NotAvailable("without redundancy no variance can be estimated");
+
 /// The variance factor that covariances are scaled with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Variance {
@@ -48,6 +50,15 @@ pub struct Correlation {
 }
 
 impl Covariances {
+    /// Those of another variance factor than 1.
+    pub(super) fn scaled(mut self, variance_factor: f64) -> Self {
+        self.variance_factor = variance_factor;
+        self.interior *= variance_factor;
+        self.poses.iter_mut().for_each(|block| *block *= variance_factor);
+        self.points.iter_mut().chain(&mut self.surfaces).for_each(|block| *block *= variance_factor);
+        self
+    }
+
     /// The covariance of one camera's unknown parameters, in their units, with their names in the order of its rows.
     pub fn of_camera(&self, camera: usize) -> (Vec<&'static str>, DMatrix<f64>) {
         let rows: Vec<usize> = (0..self.parameters.len()).filter(|&i| self.parameters[i].0 == camera).collect();
@@ -77,18 +88,25 @@ impl Covariances {
 }
 
 impl Solution<'_> {
-    /// The factor of [`Variance`], a number.
+    /// The factor of [`Variance`], a number: what makes covariances of cofactors. Under Huber's weights the estimated one counts what they hold back as what it still does.
     ///
     /// # Errors
     /// [`AdjustError::NotAvailable`] without redundancy.
     pub fn variance_factor(&self, variance: Variance) -> Result<f64, AdjustError> {
         match variance {
-            Variance::Apriori => Ok(1.0),
-            Variance::Estimated => self
-                .sigma0()
-                .map(|sigma0| sigma0 * sigma0)
-                .ok_or(AdjustError::NotAvailable("without redundancy no variance can be estimated")),
+            Variance::Estimated if self.is_weighted() => self.variance_under_weights().ok_or(NO_REDUNDANCY),
+            _ => self.residual_variance(variance),
         }
+    }
+
+    /// The same of residuals: under Huber's weights by their median.
+    pub(super) fn residual_variance(&self, variance: Variance) -> Result<f64, AdjustError> {
+        let sigma0 = match variance {
+            Variance::Apriori => Some(1.0),
+            Variance::Estimated if self.is_weighted() => self.scale().filter(|_| self.counts().redundancy() > 0),
+            Variance::Estimated => self.sigma0(),
+        };
+        sigma0.map(|sigma0| sigma0 * sigma0).ok_or(NO_REDUNDANCY)
     }
 
     /// Covariances of interior orientation and of each pose and point, by inversion of those blocks only.
@@ -98,21 +116,18 @@ impl Solution<'_> {
     pub fn covariances(&self, variance: Variance) -> Result<Covariances, AdjustError> {
         let variance_factor = self.variance_factor(variance)?;
         let inverse = self.engine.inverse(&self.solved);
-        let (mut poses, mut points) = self.blocks(&inverse);
+        Ok(self.cofactors(&inverse, &self.of_members(&inverse))?.scaled(variance_factor))
+    }
+
+    /// Covariances for a variance factor of 1, from the inverse and the cofactors of what was eliminated.
+    pub(super) fn cofactors(&self, inverse: &Inverse, of_members: &[f64]) -> Result<Covariances, AdjustError> {
+        let (mut poses, mut points) = self.blocks(inverse, of_members);
         if self.is_transformed() {
             self.transform(&mut poses, &mut points)?;
         }
-        let poses = poses.iter().enumerate().map(|(image, block)| self.in_object_axes(image, block) * variance_factor).collect();
-        points.iter_mut().for_each(|block| *block *= variance_factor);
+        poses.iter_mut().enumerate().for_each(|(image, block)| *block = self.in_object_axes(image, block));
         let surfaces = points.split_off(self.network().points.len());
-        Ok(Covariances {
-            variance_factor,
-            interior: self.interior(&inverse) * variance_factor,
-            parameters: self.parameters(),
-            poses,
-            points,
-            surfaces,
-        })
+        Ok(Covariances { variance_factor: 1.0, interior: self.interior(inverse), parameters: self.parameters(), poses, points, surfaces })
     }
 
     /// The covariance of all unknowns, on request: of `n` of them, `n^2` numbers. Rows: the parameters of [`Covariances::interior`], then six for each
@@ -175,10 +190,9 @@ impl Solution<'_> {
         let (width, plan, places) = (self.engine.layout.width, &self.engine.plan, &self.engine.layout.cameras);
         let mut interior = DMatrix::zeros(width, width);
         let used: Vec<usize> = (0..places.len()).filter(|&camera| !places[camera].free.is_empty()).collect();
-        for (n, &row) in used.iter().enumerate() {
-            for &column in &used[..=n] {
-                let block = inverse.interior_block(&self.solved, plan, row, column);
-                let across = places[column].free.len();
+        for (n, &column) in used.iter().enumerate() {
+            let across = places[column].free.len();
+            for (&row, block) in used[n..].iter().zip(inverse.of_cameras(&self.solved, plan, column, &used[n..])) {
                 for (k, value) in block.into_iter().enumerate() {
                     let (i, j) = (places[row].offset + k / across, places[column].offset + k % across);
                     (interior[(i, j)], interior[(j, i)]) = (value, value);
@@ -188,8 +202,25 @@ impl Solution<'_> {
         interior
     }
 
+    /// Cofactors of each member, row by row, one after the other.
+    fn of_members(&self, inverse: &Inverse) -> Vec<f64> {
+        let (plan, ordered) = (&self.engine.plan, self.engine.ordered(&self.end.state, &self.end.normals));
+        let (mut found, mut coupling) = (Vec::with_capacity(plan.members.len() * plan.depth() * plan.depth()), Coupling::default());
+        for place in 0..plan.members.len() {
+            match plan.eliminated {
+                Eliminated::Poses => {
+                    found.extend(inverse.member::<6>(&self.solved, ordered, place, &mut coupling).own.as_flattened());
+                }
+                Eliminated::Points => {
+                    found.extend(inverse.member::<3>(&self.solved, ordered, place, &mut coupling).own.as_flattened());
+                }
+            }
+        }
+        found
+    }
+
     /// Cofactors of each pose, in the camera's axes, and of each point.
-    fn blocks(&self, inverse: &Inverse) -> (Vec<Matrix6<f64>>, Vec<Matrix3<f64>>) {
+    fn blocks(&self, inverse: &Inverse, of_members: &[f64]) -> (Vec<Matrix6<f64>>, Vec<Matrix3<f64>>) {
         let (layout, plan) = (&self.engine.layout, &self.engine.plan);
         let mut poses = vec![Matrix6::zeros(); layout.pose_free.len()];
         let mut points = vec![Matrix3::zeros(); layout.triple_free.len()];
@@ -200,17 +231,10 @@ impl Solution<'_> {
                 Eliminated::Points => poses[kept] = Matrix6::from_row_slice(&values),
             }
         }
-        let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
-        for (place, &member) in plan.members.iter().enumerate() {
+        for (&member, own) in plan.members.iter().zip(of_members.chunks_exact(plan.depth() * plan.depth())) {
             match plan.eliminated {
-                Eliminated::Poses => {
-                    poses[member] =
-                        Matrix6::from_row_slice(inverse.member::<6>(&self.solved, ordered, place, &mut coupling).own.as_flattened());
-                }
-                Eliminated::Points => {
-                    points[member] =
-                        Matrix3::from_row_slice(inverse.member::<3>(&self.solved, ordered, place, &mut coupling).own.as_flattened());
-                }
+                Eliminated::Poses => poses[member] = Matrix6::from_row_slice(own),
+                Eliminated::Points => points[member] = Matrix3::from_row_slice(own),
             }
         }
         for (image, block) in poses.iter_mut().enumerate() {

@@ -11,7 +11,7 @@ use crate::solution::Solution;
 use crate::solve::{Coupling, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
 
-use super::covariance::Variance;
+use super::covariance::{Covariances, Variance};
 
 /// A test of single observations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,38 +95,64 @@ impl Solution<'_> {
     ///
     /// Source: Baarda 1968.
     pub fn reliability(&self, test: Test) -> Result<Reliability, AdjustError> {
+        let (mut found, scale) = self.untested(test)?;
+        let inverse = self.engine.inverse(&self.solved);
+        let of_members = self.image_points(&inverse, scale, &mut found.points)?;
+        if self.counts().observed > 0 {
+            found.observed = self.observed(&self.cofactors(&inverse, &of_members)?, scale);
+        }
+        Ok(found)
+    }
+
+    /// [`Self::covariances`] and [`Self::reliability`] from one inverse.
+    ///
+    /// # Errors
+    /// As these.
+    pub fn quality(&self, variance: Variance, test: Test) -> Result<(Covariances, Reliability), AdjustError> {
+        let (variance_factor, (mut found, scale)) = (self.variance_factor(variance)?, self.untested(test)?);
+        let inverse = self.engine.inverse(&self.solved);
+        let of_members = self.image_points(&inverse, scale, &mut found.points)?;
+        let cofactors = self.cofactors(&inverse, &of_members)?;
+        found.observed = self.observed(&cofactors, scale);
+        Ok((cofactors.scaled(variance_factor), found))
+    }
+
+    /// The test, of nothing as yet, and the scales of normalised residuals and detectable biases.
+    fn untested(&self, test: Test) -> Result<(Reliability, [f64; 2]), AdjustError> {
+        let (critical, sigma0) = self.bound(test)?;
+        let noncentrality = critical + Normal::standard().inverse_cdf(test.power);
+        let found = Reliability { test, critical, noncentrality, points: Vec::new(), observed: Vec::new() };
+        Ok((found, [sigma0, noncentrality]))
+    }
+
+    /// Beyond which normalised residuals are rejected, and by which standard deviation of unit weight they are normalised.
+    pub(super) fn bound(&self, test: Test) -> Result<(f64, f64), AdjustError> {
         let possible = |p: f64| p > 0.0 && p < 1.0;
         if !(possible(test.alpha) && possible(test.power)) {
             return Err(AdjustError::NotAvailable("alpha and power of a test lie between 0 and 1"));
         }
-        let critical = Normal::standard().inverse_cdf(1.0 - 0.5 * test.alpha);
-        let noncentrality = critical + Normal::standard().inverse_cdf(test.power);
-        let scale = [self.variance_factor(test.variance)?.sqrt(), noncentrality];
-        // First, so that the covariances that it takes are gone when the list of all image points is there.
-        let observed = self.observed(scale)?;
-        let inverse = self.engine.inverse(&self.solved);
-        let mut points = self.image_points(&inverse, scale)?;
-        points.sort_unstable_by_key(|point| point.observation);
-        Ok(Reliability { test, critical, noncentrality, points, observed })
+        Ok((Normal::standard().inverse_cdf(1.0 - 0.5 * test.alpha), self.residual_variance(test.variance)?.sqrt()))
     }
 
-    fn image_points(&self, inverse: &Inverse, scale: [f64; 2]) -> Result<Vec<PointReliability>, AdjustError> {
-        let mut found = Vec::with_capacity(self.engine.layout.sights.len());
+    /// Tests all image points, in the order given; returns the cofactors of what was eliminated, as they are needed on the way.
+    fn image_points(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<Vec<f64>, AdjustError> {
+        found.reserve_exact(self.engine.layout.sights.len());
         let all = match self.engine.plan.eliminated {
-            Eliminated::Points => self.point_by_point(inverse, scale, &mut found),
-            Eliminated::Poses => self.image_by_image(inverse, scale, &mut found),
+            Eliminated::Points => self.point_by_point(inverse, scale, found),
+            Eliminated::Poses => self.image_by_image(inverse, scale, found),
         };
-        all.map_err(|_| AdjustError::NotAvailable("the result does not picture its points"))?;
-        Ok(found)
+        found.sort_unstable_by_key(|point| point.observation);
+        all.map_err(|_| AdjustError::NotAvailable("the result does not picture its points"))
     }
 
-    fn image_by_image(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
+    fn image_by_image(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<Vec<f64>, Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
-        let (mut rows, mut scratch) = (Rows::default(), Scratch::default());
+        let (mut rows, mut scratch, mut of_members) = (Rows::default(), Scratch::default(), Vec::with_capacity(36 * plan.members.len()));
         for (image, range) in layout.of_image.iter().enumerate() {
             let place = plan.members.binary_search(&image).ok();
             let member = place.map(|place| inverse.member::<6>(&self.solved, ordered, place, &mut coupling));
+            of_members.extend(member.iter().flat_map(|member| member.own.as_flattened()));
             for start in range.clone().step_by(CHUNK) {
                 let chunk = start..(start + CHUNK).min(range.end);
                 rows.fill((*network, layout), &self.end.state, *loss, image, chunk.clone(), &mut scratch)?;
@@ -136,16 +162,16 @@ impl Solution<'_> {
                 }
             }
         }
-        Ok(())
+        Ok(of_members)
     }
 
     /// Some points at a time, with all their sights: those of an image are in the order of their points.
-    fn point_by_point(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
+    fn point_by_point(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<Vec<f64>, Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         let (count, mut next) = (layout.triple_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
         let mut rows: Vec<Rows> = (0..layout.of_image.len()).map(|_| Rows::default()).collect();
-        let (mut first, mut scratch) = (0, Scratch::default());
+        let (mut first, mut scratch, mut of_members) = (0, Scratch::default(), Vec::with_capacity(9 * plan.members.len()));
         while first < count {
             let (mut end, mut sights) = (first, 0);
             while end < count && (end == first || sights < CHUNK) {
@@ -162,6 +188,7 @@ impl Solution<'_> {
             for point in first..end {
                 let place = plan.members.binary_search(&point).ok();
                 let member = place.map(|place| inverse.member::<3>(&self.solved, ordered, place, &mut coupling));
+                of_members.extend(member.iter().flat_map(|member| member.own.as_flattened()));
                 for sight in layout.of_triple(point) {
                     let row = rows[layout.sights[sight].image()].of(sight);
                     let adjusted = self.adjusted(inverse, sight, row, member.as_ref());
@@ -170,7 +197,7 @@ impl Solution<'_> {
             }
             first = end;
         }
-        Ok(())
+        Ok(of_members)
     }
 
     /// `A Q A^T` of an image point, white.
@@ -185,17 +212,16 @@ impl Solution<'_> {
         };
         let parts: Vec<(usize, &[[f64; 2]])> =
             [(camera, &row[..width]), (kept, other)].into_iter().filter(|(block, part)| *block != usize::MAX && !part.is_empty()).collect();
-        let column = |by: [f64; 2]| Vector2::from(by);
         let mut sum = Matrix2::zeros();
-        for &(a, left) in &parts {
-            for &(b, right) in &parts {
-                let block = inverse.block(plan, a, b);
-                for (k, q) in block.into_iter().enumerate() {
-                    sum += column(left[k / right.len()]) * column(right[k % right.len()]).transpose() * q;
-                }
+        for (i, &(a, left)) in parts.iter().enumerate() {
+            sum += inverse.between(plan, (a, left), (a, left));
+            for &right in &parts[..i] {
+                let cross = inverse.between(plan, (a, left), right);
+                sum += cross + cross.transpose();
             }
         }
         let Some(member) = member else { return sum };
+        let column = |by: [f64; 2]| Vector2::from(by);
         for d in 0..D {
             (0..D).for_each(|e| sum += column(own[d]) * column(own[e]).transpose() * member.own[d][e]);
         }
@@ -203,10 +229,9 @@ impl Solution<'_> {
         for coupled in &member.coupled {
             if let Some((_, part)) = parts.iter().find(|(block, _)| *block == coupled.block) {
                 for (d, own) in own.iter().enumerate() {
-                    for (q, by) in member.cross(d, first, coupled.width).iter().zip(*part) {
-                        let cross = column(*own) * column(*by).transpose() * *q;
-                        sum += cross + cross.transpose();
-                    }
+                    let by = member.cross(d, first, coupled.width).iter().zip(*part).map(|(q, by)| column(*by) * *q).sum::<Vector2<f64>>();
+                    let cross = column(*own) * by.transpose();
+                    sum += cross + cross.transpose();
                 }
             }
             first += coupled.width;
@@ -232,20 +257,20 @@ impl Solution<'_> {
         }
     }
 
-    fn observed(&self, scale: [f64; 2]) -> Result<Vec<ObservedReliability>, AdjustError> {
-        let (network, state, covariances) = (self.engine.network, &self.end.state, self.covariances(Variance::Apriori)?);
+    fn observed(&self, cofactors: &Covariances, scale: [f64; 2]) -> Vec<ObservedReliability> {
+        let (network, state) = (self.engine.network, &self.end.state);
         let mut found = Vec::new();
         let mut add = |what: String, v: f64, sigma: f64, cofactor: f64| found.push(observed(what, v, sigma, cofactor, scale));
-        for (k, (camera, name)) in covariances.parameters.iter().enumerate() {
+        for (k, (camera, name)) in cofactors.parameters.iter().enumerate() {
             let parameters = state.cameras[*camera].parameters();
             let place = parameters.iter().position(|parameter| parameter.name == *name).unwrap_or_default();
             if let Status::Observed { value, sigma } = network.cameras[*camera].parameters[place] {
                 let what = format!("{name} of {}", network.cameras[*camera].name);
-                add(what, parameters[place].value - value, sigma, covariances.interior[(k, k)]);
+                add(what, parameters[place].value - value, sigma, cofactors.interior[(k, k)]);
             }
         }
         for (i, image) in network.images.iter().enumerate() {
-            let (pose, q) = (&state.poses[i], &covariances.poses[i]);
+            let (pose, q) = (&state.poses[i], &cofactors.poses[i]);
             if let Centre::Observed { value, sigma } = image.centre {
                 for k in 0..3 {
                     add(format!("{} of image {}", ["X0", "Y0", "Z0"][k], image.name), pose.centre[k] - value[k], sigma[k], q[(k, k)]);
@@ -264,7 +289,7 @@ impl Solution<'_> {
             for (k, status) in point.coordinates.iter().enumerate() {
                 if let Status::Observed { value, sigma } = *status {
                     let what = format!("{} of point {}", ["X", "Y", "Z"][k], point.name);
-                    add(what, state.points[i][k] - value, sigma, covariances.points[i][(k, k)]);
+                    add(what, state.points[i][k] - value, sigma, cofactors.points[i][(k, k)]);
                 }
             }
         }
@@ -272,11 +297,11 @@ impl Solution<'_> {
             for (k, status) in surface.statuses.iter().enumerate() {
                 if let Status::Observed { value, sigma } = *status {
                     let what = format!("coefficient {} of surface {}", k + 1, surface.name);
-                    add(what, values[k] - value, sigma, covariances.surfaces[i][(k, k)]);
+                    add(what, values[k] - value, sigma, cofactors.surfaces[i][(k, k)]);
                 }
             }
         }
-        Ok(found)
+        found
     }
 }
 

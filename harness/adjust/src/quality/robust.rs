@@ -32,6 +32,42 @@ impl Solution<'_> {
         scale_of(self.each_white_residual())
     }
 
+    /// Whether any image point has less than its full weight.
+    pub(super) fn is_weighted(&self) -> bool {
+        self.end.normals.residuals.iter().any(|residual| residual.weight < 1.0)
+    }
+
+    /// The variance factor of an estimate with Huber's weights, against cofactors of the weighted equations: the mean square of what residuals count as by the squared mean of how that changes
+    /// with them, and a correction for the number of unknowns. `None` without redundancy.
+    ///
+    /// Of a vector that is held back to the length `k` the part along it does not change, the one across does by its weight.
+    ///
+    /// Source: Huber 1981, section 7.6.
+    pub(super) fn variance_under_weights(&self) -> Option<f64> {
+        let (counts, network) = (self.counts(), self.network());
+        let redundancy = counts.redundancy();
+        if redundancy <= 0 {
+            return None;
+        }
+        let (mut squares, mut weights, mut slopes, mut slope_squares) = (self.cost(), 0.0, 0.0, 0.0);
+        for (sight, residual) in self.engine.layout.sights.iter().zip(&self.end.normals.residuals) {
+            let weight = residual.weight;
+            let [x, y] = sight.observed(&network.observations).precision.whitened(residual.px);
+            let square = x * x + y * y;
+            // Its cost is 2 k |v| - k^2, with k = w |v|, and it counts as k^2.
+            squares -= 2.0 * square * weight * (1.0 - weight);
+            weights += weight;
+            let along = if weight < 1.0 { 0.0 } else { 1.0 };
+            slopes += 0.5 * (along + weight);
+            slope_squares += 0.5 * (along + weight * weight);
+        }
+        let points = 0.5 * counts.image_coordinates as f64;
+        let [weight, slope, slope_square] = [weights, slopes, slope_squares].map(|sum| sum / points);
+        let variance = slope_square - slope * slope;
+        let few = 1.0 + counts.unknowns as f64 / (2.0 * points) * variance / (slope * slope);
+        Some(few * few * squares / redundancy as f64 * weight / (slope * slope))
+    }
+
     /// Every observation whose residual is gross by a scale, but those of `never`; with its length in standard deviations.
     fn gross(&self, scale: f64, never: &BTreeSet<usize>) -> Vec<(usize, f64)> {
         let observations = &self.network().observations;

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-use super::covariance::Variance;
+use super::covariance::Covariances;
 use crate::AdjustError;
 use crate::solution::Solution;
 use calibench_model::camera::CameraModel;
@@ -16,7 +16,7 @@ pub struct Significance {
     pub parameter: &'static str,
     /// Its value, in its own unit.
     pub value: f64,
-    /// Its standard deviation, in the same unit, with the estimated variance factor.
+    /// Its standard deviation, in the same unit, as the covariances say.
     pub sigma: f64,
     /// `value / sigma`: Student's distribution with the redundancy's degrees of freedom, if it is zero in truth.
     pub t: f64,
@@ -40,12 +40,12 @@ pub struct Comparison {
 }
 
 impl Solution<'_> {
-    /// A t-test of each unknown interior parameter against zero. It means something for additional parameters, not for c.
+    /// A t-test of each unknown interior parameter against zero, by covariances with the estimated variance factor. It means something for additional
+    /// parameters, not for c.
     ///
     /// # Errors
     /// [`AdjustError::NotAvailable`] without redundancy.
-    pub fn significance(&self) -> Result<Vec<Significance>, AdjustError> {
-        let covariances = self.covariances(Variance::Estimated)?;
+    pub fn significance(&self, covariances: &Covariances) -> Result<Vec<Significance>, AdjustError> {
         let student = StudentsT::new(0.0, 1.0, self.counts().redundancy() as f64);
         let student = student.map_err(|_| AdjustError::NotAvailable("without redundancy there is no test"))?;
         let of = |(k, &(camera, parameter)): (usize, &(usize, &'static str))| {

@@ -1,4 +1,6 @@
-//! Data snooping: one suspect after the other.
+//! Data snooping: one suspect of an image after the other.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::reliability::Test;
 use super::robust::without_gross;
@@ -12,7 +14,7 @@ use crate::state::State;
 pub struct Snooping {
     /// The test.
     pub test: Test,
-    /// Image points that may be left out one after the other, at most.
+    /// Image points that may be left out beside those that are gross together, at most.
     pub most: usize,
 }
 
@@ -35,43 +37,115 @@ pub struct Found {
     pub left_out: bool,
 }
 
-/// Adjusts, leaves out the image point with the largest normalised residual beyond the critical value, adjusts again, until none is left.
+/// Adjusts, leaves out what Baarda's test rejects, adjusts again, until nothing is rejected: the image point with the largest normalised residual beyond the
+/// critical value of each image at a time, since an error shows most where it is. What was left out and fits in the end is taken in again.
 ///
 /// Where more than a hundredth of the image points are beyond ten standard deviations they hide one another: then all of them that a robust adjustment shows are left out
 /// first, together.
 ///
-/// Returns the last solution and every image point that was rejected, in that order; none disappears: [`Solution::residuals`] lists them as left out.
+/// Returns the last solution and every image point that was rejected; none disappears: [`Solution::residuals`] lists them as left out.
 ///
 /// # Errors
 /// As [`crate::adjust`], of the network as given.
 ///
 /// Source: Baarda 1968.
 pub fn snoop<'n>(network: &'n Network, options: &Options, snooping: Snooping) -> Result<(Solution<'n>, Vec<Found>), AdjustError> {
-    let mut options = options.clone();
     network.check()?;
-    let (mut solution, mut found) = match without_gross(network, &options) {
+    let (solution, found) = match without_gross(network, options) {
         Some(found) => found,
-        None => (adjust_from(network, &options, State::of(network))?, Vec::new()),
+        None => (adjust_from(network, options, State::of(network))?, Vec::new()),
     };
-    options.left_out.extend(found.iter().map(|found| found.observation));
-    let together = found.len();
-    loop {
-        let reliability = solution.reliability(snooping.test)?;
-        let refused = |observation: usize| found.iter().any(|found| found.observation == observation);
-        let size = |w: [f64; 2]| w[0].abs().max(w[1].abs());
-        let worst = reliability.points.iter().filter(|point| !refused(point.observation)).max_by(|a, b| size(a.w).total_cmp(&size(b.w)));
-        let Some(worst) = worst.filter(|worst| size(worst.w) > reliability.critical) else { return Ok((solution, found)) };
-        let mut suspect = Found { observation: worst.observation, w: size(worst.w), critical: reliability.critical, left_out: false };
-        if found[together..].iter().filter(|found| found.left_out).count() < snooping.most {
-            options.left_out.push(suspect.observation);
-            match adjust_from(network, &options, solution.end.state.clone()) {
-                Ok(better) => (solution, suspect.left_out) = (better, true),
-                Err(_) => drop(options.left_out.pop()),
+    let mut search = Search { options, snooping, together: found.len(), solution, found };
+    search.reject()?;
+    if search.take_in_again() {
+        search.reject()?;
+    }
+    Ok((search.solution, search.found))
+}
+
+/// Rejections so far.
+struct Search<'o, 'n> {
+    options: &'o Options,
+    snooping: Snooping,
+    solution: Solution<'n>,
+    found: Vec<Found>,
+    /// How many were left out first.
+    together: usize,
+}
+
+impl<'n> Search<'_, 'n> {
+    /// Least squares without what was left out, and without `more`.
+    fn without(&self, more: &[usize]) -> Result<Solution<'n>, AdjustError> {
+        let found = self.found.iter().filter(|found| found.left_out).map(|found| found.observation);
+        let left_out = self.options.left_out.iter().copied().chain(found).chain(more.iter().copied()).collect();
+        adjust_from(self.solution.network(), &Options { left_out, ..self.options.clone() }, self.solution.end.state.clone())
+    }
+
+    /// How many more may be left out.
+    fn rest(&self) -> usize {
+        let so_far = self.found.iter().filter(|found| found.left_out).count();
+        (self.snooping.most + self.together).saturating_sub(so_far)
+    }
+
+    /// Leaves out what is rejected, until nothing is.
+    fn reject(&mut self) -> Result<(), AdjustError> {
+        loop {
+            let mut suspects = self.suspects()?;
+            if suspects.is_empty() {
+                return Ok(());
+            }
+            let rest = self.rest().min(suspects.len());
+            let observations: Vec<usize> = suspects[..rest].iter().map(|suspect| suspect.observation).collect();
+            // Where the network needs one of them the worst is asked for alone.
+            for count in [rest, 1.min(rest)].into_iter().filter(|count| *count > 0) {
+                if let Ok(better) = self.without(&observations[..count]) {
+                    self.solution = better;
+                    suspects[..count].iter_mut().for_each(|suspect| suspect.left_out = true);
+                    break;
+                }
+                suspects.truncate(1);
+            }
+            self.found.extend(suspects);
+        }
+    }
+
+    /// Of each image the worst point that is rejected and was not so far, the worst of all first.
+    fn suspects(&self) -> Result<Vec<Found>, AdjustError> {
+        let reliability = self.solution.reliability(self.snooping.test)?;
+        let refused: BTreeSet<usize> = self.found.iter().map(|found| found.observation).collect();
+        let images = &self.solution.network().observations;
+        let mut worst: BTreeMap<usize, Found> = BTreeMap::new();
+        for point in reliability.points.iter().filter(|point| !refused.contains(&point.observation)) {
+            let w = point.w[0].abs().max(point.w[1].abs());
+            let of_image = worst.get(&images[point.observation].image).map_or(reliability.critical, |worst| worst.w);
+            if w > of_image {
+                let found = Found { observation: point.observation, w, critical: reliability.critical, left_out: false };
+                worst.insert(images[point.observation].image, found);
             }
         }
-        found.push(suspect);
-        if found.len() >= network.observations.len() {
-            return Ok((solution, found));
+        let mut suspects: Vec<Found> = worst.into_values().collect();
+        suspects.sort_by(|a, b| b.w.total_cmp(&a.w));
+        Ok(suspects)
+    }
+
+    /// Takes in what was left out and fits, as it is without it; whether there is any. What does not stand its test then is rejected again.
+    fn take_in_again(&mut self) -> bool {
+        let Ok((critical, sigma0)) = self.solution.bound(self.snooping.test) else { return false };
+        let before = self.found.clone();
+        let observations = &self.solution.network().observations;
+        let residuals = self.solution.residuals();
+        let fits = |found: &Found| {
+            let white = residuals[found.observation].v.map(|v| observations[found.observation].precision.whitened(v));
+            white.is_some_and(|v| v[0].abs().max(v[1].abs()) < critical * sigma0)
+        };
+        self.found.retain(|found| !(found.left_out && fits(found)));
+        if self.found.len() == before.len() {
+            return false;
         }
+        match self.without(&[]) {
+            Ok(solution) => self.solution = solution,
+            Err(_) => self.found = before,
+        }
+        true
     }
 }

@@ -1,12 +1,13 @@
 //! Which unknowns are eliminated first, and where the others stand in what remains.
 
-use std::collections::BTreeSet;
-
 use super::Engine;
 use super::window::Window;
 use crate::network::Layout;
 use crate::normal::Normals;
 use crate::state::State;
+
+/// Rows of a column that are not yet worth sorting.
+const FEW_ROWS: usize = 64;
 
 /// The blocks that are eliminated one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,25 +129,52 @@ impl Plan {
         }
     }
 
-    /// Pairs of kept blocks (row, column) that have a block in the reduced matrix: row at or below column.
-    pub(crate) fn pattern(&self, layout: &Layout) -> BTreeSet<(usize, usize)> {
-        let mut pattern: BTreeSet<_> = (0..self.kept.len() - 1).map(|block| (block, block)).collect();
+    /// Of each column of kept blocks the rows at or below that have a block in the reduced matrix.
+    pub(crate) fn pattern(&self, layout: &Layout) -> Vec<Vec<usize>> {
+        let mut columns: Vec<Column> = (0..self.kept.len() - 1).map(|block| Column { rows: vec![block], most: 0 }).collect();
         let mut coupled = Vec::new();
         for place in 0..self.members.len() {
             self.couple(layout, place, &mut coupled);
-            for (i, row) in coupled.iter().enumerate() {
-                pattern.extend(coupled[..=i].iter().map(|column| (row.block, column.block)));
+            for (i, column) in coupled.iter().enumerate() {
+                columns[column.block].add(coupled[i..].iter().map(|row| row.block));
             }
         }
         for (kept, &block) in self.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
             match self.eliminated {
-                Eliminated::Points => {
-                    pattern.insert((block, layout.camera_of[kept]));
+                Eliminated::Points => columns[layout.camera_of[kept]].add(std::iter::once(block)),
+                Eliminated::Poses => {
+                    layout.pairs[layout.pairs_of(kept)].iter().for_each(|pair| columns[pair.camera].add(std::iter::once(block)));
                 }
-                Eliminated::Poses => pattern.extend(layout.pairs[layout.pairs_of(kept)].iter().map(|pair| (block, pair.camera))),
             }
         }
-        pattern
+        columns.into_iter().map(Column::rows).collect()
+    }
+}
+
+/// Rows of a column of blocks, each as often as it was found since they were last sorted.
+struct Column {
+    rows: Vec<usize>,
+    /// Beyond so many they are sorted.
+    most: usize,
+}
+
+impl Column {
+    fn add(&mut self, rows: impl Iterator<Item = usize>) {
+        self.rows.extend(rows);
+        if self.rows.len() > self.most {
+            self.sort();
+            self.most = 2 * self.rows.len() + FEW_ROWS;
+        }
+    }
+
+    fn sort(&mut self) {
+        self.rows.sort_unstable();
+        self.rows.dedup();
+    }
+
+    fn rows(mut self) -> Vec<usize> {
+        self.sort();
+        self.rows
     }
 }
 

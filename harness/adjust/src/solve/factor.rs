@@ -1,12 +1,13 @@
 //! Cholesky's decomposition of the reduced matrix, its unknowns scaled to ones on the diagonal of the normal equations.
 
-use faer::linalg::solvers::{DenseSolveCore, Llt, SolveCore};
-use faer::sparse::linalg::solvers::{Llt as SparseLlt, SymbolicLlt};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, MatMut, MatRef, Side};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::inverse::{inverse, inverse_scratch};
+use faer::linalg::solvers::{Llt, SolveCore};
+use faer::{Conj, Mat, MatMut, MatRef, Par, Side};
 
 use super::reduced::Reduced;
 use super::small_cholesky::LOST;
+use super::sparse_factor::{SparseFactor, Structure};
 
 /// Up to this size a plain loop is faster than a library's set-up.
 const SMALL: usize = 48;
@@ -24,25 +25,7 @@ pub(crate) struct Factor {
 enum Kind {
     Small(Vec<f64>),
     Dense(Llt<f64>),
-    Sparse(SparseLlt<usize, f64>),
-}
-
-/// The structure of a sparse matrix, found once.
-#[derive(Clone, Debug)]
-pub(crate) struct Structure {
-    pointers: Vec<usize>,
-    indices: Vec<usize>,
-    symbolic: SymbolicLlt<usize>,
-}
-
-impl Structure {
-    /// `None` for a dense matrix, or if memory does not suffice.
-    pub(crate) fn of(reduced: &Reduced) -> Option<Self> {
-        let (pointers, indices) = reduced.sparse.as_ref()?.columns();
-        let symbolic = SymbolicSparseColMatRef::new_checked(reduced.size, reduced.size, &pointers, None, &indices);
-        let symbolic = SymbolicLlt::try_new(symbolic, Side::Lower).ok()?;
-        Some(Self { pointers, indices, symbolic })
-    }
+    Sparse(SparseFactor),
 }
 
 impl Factor {
@@ -51,8 +34,8 @@ impl Factor {
         let n = reduced.size;
         if let (Some(_), Some(structure)) = (&reduced.sparse, structure) {
             for column in 0..n {
-                for k in structure.pointers[column]..structure.pointers[column + 1] {
-                    reduced.values[k] /= scale[structure.indices[k]] * scale[column];
+                for (k, row) in structure.rows(column) {
+                    reduced.values[k] /= scale[row] * scale[column];
                 }
             }
             return Self::sparse(&reduced, scale, structure);
@@ -72,11 +55,8 @@ impl Factor {
     }
 
     fn sparse(reduced: &Reduced, scale: Vec<f64>, structure: &Structure) -> Option<Self> {
-        let n = reduced.size;
-        let symbolic = SymbolicSparseColMatRef::new_checked(n, n, &structure.pointers, None, &structure.indices);
-        let matrix = SparseColMatRef::new(symbolic, &reduced.values);
-        let llt = SparseLlt::try_new_with_symbolic(structure.symbolic.clone(), matrix, Side::Lower).ok()?;
-        let mut factor = Self { scale, kind: Kind::Sparse(llt), smallest_pivot: 0.0 };
+        let kind = Kind::Sparse(SparseFactor::of(reduced, structure)?);
+        let mut factor = Self { scale, kind, smallest_pivot: 0.0 };
         factor.smallest_pivot = factor.weakest();
         (factor.smallest_pivot > LOST).then_some(factor)
     }
@@ -123,33 +103,35 @@ impl Factor {
                 }
             }
             Kind::Dense(llt) => llt.solve_in_place_with_conj(Conj::No, x),
-            Kind::Sparse(llt) => llt.solve_in_place_with_conj(Conj::No, x),
+            Kind::Sparse(factor) => factor.solve(x),
         }
     }
 
-    /// `S^-1`, column by column, both triangles.
-    pub(crate) fn inverse(&self) -> Vec<f64> {
+    /// The lower triangle of `S^-1`, of a sparse matrix within the pattern that `into` has.
+    pub(crate) fn inverse(&self, into: &mut Reduced) {
         let n = self.size();
-        let mut inverse = match &self.kind {
+        if let Kind::Sparse(factor) = &self.kind {
+            let selected = factor.selected();
+            into.fill(|row, column| selected.entry(row, column) / (self.scale[row] * self.scale[column]));
+            return;
+        }
+        into.values.fill(0.0);
+        match &self.kind {
             Kind::Dense(llt) => {
-                let found = llt.inverse();
-                (0..n * n).map(|k| found[(k % n, k / n)]).collect()
+                let mut memory = MemBuffer::new(inverse_scratch::<f64>(n, Par::Seq));
+                let values = MatMut::from_column_major_slice_mut(&mut into.values, n, n);
+                inverse(values, llt.L(), Par::Seq, MemStack::new(&mut memory));
             }
             _ => {
-                let mut identity = vec![0.0; n * n];
-                (0..n).for_each(|i| identity[i * (n + 1)] = 1.0);
+                (0..n).for_each(|i| into.values[i * (n + 1)] = 1.0);
                 if n > 0 {
-                    self.solve_scaled(MatMut::from_column_major_slice_mut(&mut identity, n, n));
+                    self.solve_scaled(MatMut::from_column_major_slice_mut(&mut into.values, n, n));
                 }
-                identity
-            }
-        };
-        for column in 0..n {
-            for row in 0..n {
-                inverse[column * n + row] /= self.scale[row] * self.scale[column];
             }
         }
-        inverse
+        for (column, values) in into.values.chunks_exact_mut(n.max(1)).enumerate() {
+            values.iter_mut().zip(&self.scale).skip(column).for_each(|(value, scale)| *value /= scale * self.scale[column]);
+        }
     }
 }
 

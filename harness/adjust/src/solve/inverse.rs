@@ -1,7 +1,9 @@
 //! Those blocks of the inverse that covariances need: no full inverse of the network's normal equations is ever made.
 //!
-//! With `Q_kk = S^-1`, of which only the blocks of the reduced matrix's own pattern are kept if it is sparse: `Q_ee = L^-T (1 + Z Y^T) L^-1` and
+//! With `Q_kk = S^-1`, of which only the blocks of the reduced matrix's own pattern are kept, and found, if it is sparse: `Q_ee = L^-T (1 + Z Y^T) L^-1` and
 //! `Q_ek = -L^-T Z` with `Z = Y Q_kk`.
+
+use nalgebra::Matrix2;
 
 use super::Solved;
 use super::elimination_order::{Coupled, Ordered, Plan};
@@ -33,17 +35,14 @@ impl<const D: usize> Member<D> {
 
 impl Inverse {
     pub(crate) fn of(solved: &Solved, plan: &Plan, blank: &Reduced) -> Self {
-        let n = plan.size();
-        if blank.sparse.is_none() {
-            return Self(Reduced { size: n, values: solved.factor.inverse(), sparse: None });
-        }
         let mut kept = blank.clone();
-        for column in 0..plan.kept.len() - 1 {
-            let width = plan.width(column);
-            let mut identity = vec![0.0; n * width];
-            (0..width).for_each(|j| identity[j * n + plan.kept[column] + j] = 1.0);
-            solved.factor.solve(&mut identity);
-            kept.fill_column(column, &plan.kept, &identity);
+        solved.factor.inverse(&mut kept);
+        // The blocks on the diagonal are whole.
+        for block in 0..plan.kept.len() - 1 {
+            let (start, stride) = kept.place((block, plan.kept[block]), (block, plan.kept[block]));
+            for j in 0..plan.width(block) {
+                (0..j).for_each(|i| kept.values[start + j * stride + i] = kept.values[start + i * stride + j]);
+            }
         }
         Self(kept)
     }
@@ -62,16 +61,31 @@ impl Inverse {
             .collect()
     }
 
-    /// A block of `Q_kk` of two cameras, row by row, in the pattern or not.
-    pub(crate) fn interior_block(&self, solved: &Solved, plan: &Plan, row: usize, column: usize) -> Vec<f64> {
-        if self.0.sparse.is_none() || row == column {
-            return self.block(plan, row, column);
+    /// `A Q_kk B^T` of two kept blocks, the first not before the second, and the columns of `A` and `B` that belong to them; they must be of the pattern.
+    pub(crate) fn between(&self, plan: &Plan, (row, a): (usize, &[[f64; 2]]), (column, b): (usize, &[[f64; 2]])) -> Matrix2<f64> {
+        let (start, stride) = self.0.place((row, plan.kept[row]), (column, plan.kept[column]));
+        let mut sum = [[0.0; 2]; 2];
+        for (j, b) in b.iter().enumerate() {
+            let mut product = [0.0; 2];
+            for (q, a) in self.0.values[start + j * stride..][..a.len()].iter().zip(a) {
+                (product[0], product[1]) = (product[0] + a[0] * q, product[1] + a[1] * q);
+            }
+            (0..4).for_each(|k| sum[k / 2][k % 2] += product[k / 2] * b[k % 2]);
         }
-        let (n, height, width) = (plan.size(), plan.width(row), plan.width(column));
+        Matrix2::new(sum[0][0], sum[0][1], sum[1][0], sum[1][1])
+    }
+
+    /// Blocks of `Q_kk`, row by row each, of a camera with itself and later ones, in the pattern or not.
+    pub(crate) fn of_cameras(&self, solved: &Solved, plan: &Plan, column: usize, rows: &[usize]) -> Vec<Vec<f64>> {
+        if rows.iter().all(|&row| self.0.has(row, column)) {
+            return rows.iter().map(|&row| self.block(plan, row, column)).collect();
+        }
+        let (n, width) = (plan.size(), plan.width(column));
         let mut identity = vec![0.0; n * width];
         (0..width).for_each(|j| identity[j * n + plan.kept[column] + j] = 1.0);
         solved.factor.solve(&mut identity);
-        (0..height * width).map(|k| identity[(k % width) * n + plan.kept[row] + k / width]).collect()
+        let entry = |row: usize, k: usize| identity[(k % width) * n + plan.kept[row] + k / width];
+        rows.iter().map(|&row| (0..plan.width(row) * width).map(|k| entry(row, k)).collect()).collect()
     }
 
     /// Cofactors of a member.

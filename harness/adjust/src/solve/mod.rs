@@ -8,7 +8,9 @@ mod kernel;
 mod place;
 mod reduced;
 mod schur;
+mod selected;
 mod small_cholesky;
+mod sparse_factor;
 mod window;
 
 use calibench_model::stop;
@@ -19,11 +21,12 @@ use crate::network::{ImageObservation, Layout, Network, Sight};
 use crate::normal::{Loss, Lost, Normals, Scratch, linearise};
 use crate::state::{State, Step};
 pub(crate) use elimination_order::{Eliminated, Ordered, Plan};
-use factor::{Factor, Structure};
+use factor::Factor;
 pub(crate) use inverse::{Inverse, Member};
 use place::Place;
 use reduced::Reduced;
 pub(crate) use schur::{Coupling, Schur};
+use sparse_factor::Structure;
 
 /// Sights up to which the couplings of all are kept.
 const MOST_KEPT: usize = 1 << 18;

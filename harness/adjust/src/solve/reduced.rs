@@ -1,7 +1,5 @@
 //! The matrix that remains after the elimination: dense, or by sparse columns of blocks.
 
-use std::collections::BTreeSet;
-
 /// Below this size a matrix is dense whatever it holds.
 const ALWAYS_DENSE: usize = 400;
 /// Share of blocks above which a matrix is dense.
@@ -29,7 +27,7 @@ pub(crate) struct Pattern {
 }
 
 impl Reduced {
-    pub(crate) fn new(kept: &[usize], pattern: impl FnOnce() -> BTreeSet<(usize, usize)>) -> Self {
+    pub(crate) fn new(kept: &[usize], pattern: impl FnOnce() -> Vec<Vec<usize>>) -> Self {
         let size = kept[kept.len() - 1];
         let dense = || Self { size, values: vec![0.0; size * size], sparse: None };
         if size < ALWAYS_DENSE {
@@ -37,7 +35,8 @@ impl Reduced {
         }
         let pattern = pattern();
         let width = |block: usize| kept[block + 1] - kept[block];
-        let filled: usize = pattern.iter().map(|&(row, column)| width(row) * width(column)).sum();
+        let of_column = |(column, rows): (usize, &Vec<usize>)| width(column) * rows.iter().map(|row| width(*row)).sum::<usize>();
+        let filled: usize = pattern.iter().enumerate().map(of_column).sum();
         if filled as f64 > DENSE * 0.5 * (size * size) as f64 {
             return dense();
         }
@@ -56,10 +55,7 @@ impl Reduced {
 }
 
 impl Pattern {
-    fn of(kept: &[usize], pattern: &BTreeSet<(usize, usize)>) -> (Self, usize) {
-        let blocks = kept.len() - 1;
-        let mut columns = vec![Vec::new(); blocks];
-        pattern.iter().for_each(|&(row, column)| columns[column].push(row));
+    fn of(kept: &[usize], columns: &[Vec<usize>]) -> (Self, usize) {
         let mut found = Self { first: kept.to_vec(), start: vec![0], rows: Vec::new(), values: Vec::new() };
         let mut length = 0;
         for (column, rows) in columns.iter().enumerate() {
@@ -125,15 +121,25 @@ impl Reduced {
 }
 
 impl Reduced {
-    /// Takes the values of a column of blocks from full columns.
-    pub(crate) fn fill_column(&mut self, column: usize, kept: &[usize], from: &[f64]) {
+    /// Takes the value of each row and column that the lower triangle holds.
+    pub(crate) fn fill(&mut self, value: impl Fn(usize, usize) -> f64) {
         let Some(pattern) = &self.sparse else { return };
-        let (first, height) = pattern.values[column];
-        for &(row, place) in &pattern.rows[pattern.start[column]..pattern.start[column + 1]] {
-            for j in 0..kept[column + 1] - kept[column] {
-                let rows = kept[row]..kept[row + 1];
-                self.values[first + j * height + place..][..rows.len()].copy_from_slice(&from[j * self.size..][rows]);
+        for column in 0..pattern.values.len() {
+            let (first, height) = pattern.values[column];
+            for &(row, place) in &pattern.rows[pattern.start[column]..pattern.start[column + 1]] {
+                for (j, at) in (pattern.first[column]..pattern.first[column + 1]).enumerate() {
+                    let rows = pattern.first[row]..pattern.first[row + 1];
+                    let into = &mut self.values[first + j * height + place..][..rows.len()];
+                    into.iter_mut().zip(rows).for_each(|(into, row)| *into = value(row, at));
+                }
             }
         }
+    }
+
+    /// Whether it has a block of two kept blocks, the row at or below the column.
+    pub(crate) fn has(&self, row: usize, column: usize) -> bool {
+        let rows =
+            |pattern: &Pattern| pattern.rows[pattern.start[column]..pattern.start[column + 1]].binary_search_by_key(&row, |found| found.0);
+        self.sparse.as_ref().is_none_or(|pattern| rows(pattern).is_ok())
     }
 }

@@ -3,6 +3,8 @@
 mod counts;
 mod crept;
 mod datum;
+mod gross;
+mod inverse;
 mod networks;
 mod noise_free;
 mod projection_uncertainty;

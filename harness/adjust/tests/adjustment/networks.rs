@@ -119,17 +119,22 @@ pub fn ring_from(camera: Camera, distance: f64, images: usize, points: usize, se
 
 /// A flight of 10 strips of 20 images over 100 x 50 points: about ten images see a point.
 pub fn flight(camera: Camera, seed: u64) -> Network {
+    block(camera, [20, 10], [100, 50], seed)
+}
+
+/// Aerial images along strips and by their number, and ground points on a grid of so many.
+pub fn block(camera: Camera, [per_strip, strips]: [u32; 2], [columns, rows]: [u32; 2], seed: u64) -> Network {
     let mut random = random(seed);
-    let (strips, per_strip, height) = (10_u32, 20, 100.0);
+    let height = 100.0;
     let mut uniform = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     // The frame on the ground is about 110 x 82 units.
     let (east, north) = (24.0, 27.0);
-    let points = (0..5000_u32)
+    let part = |i: u32, of: u32| f64::from(i) / f64::from(of - 1);
+    let points = (0..columns * rows)
         .map(|i| {
-            let (column, row) = (f64::from(i % 100), f64::from(i / 100));
             let position = Point3::new(
-                (column / 99.0) * 19.0 * east + uniform(-2.0, 2.0),
-                (row / 49.0) * 9.0 * north + uniform(-2.0, 2.0),
+                part(i % columns, columns) * f64::from(per_strip - 1) * east + uniform(-2.0, 2.0),
+                part(i / columns, rows) * f64::from(strips - 1) * north + uniform(-2.0, 2.0),
                 uniform(-10.0, 10.0),
             );
             ObjectPoint::free(format!("P{i}"), position)

@@ -178,9 +178,10 @@ fn tests_tell_parameters_that_are_needed_from_others() {
     let idle = compare(&right, &large).unwrap();
     assert!(idle.more == 3 && idle.p > 0.01 && idle.second_aic > idle.first_aic, "{idle:?}");
     assert!(compare(&large, &right).is_err());
-    let p = |solution: &Solution, name: &str| solution.significance().unwrap().into_iter().find(|found| found.parameter == name).unwrap().p;
+    let tests = |solution: &Solution| solution.significance(&solution.covariances(Variance::Estimated).unwrap()).unwrap();
+    let p = |solution: &Solution, name: &str| tests(solution).into_iter().find(|found| found.parameter == name).unwrap().p;
     assert!(["k3", "b1", "b2"].iter().all(|name| p(&large, name) > 1e-3));
-    assert!(["k1", "k2", "p1", "p2"].iter().all(|name| p(&right, name) < 1e-3), "{:?}", right.significance());
+    assert!(["k1", "k2", "p1", "p2"].iter().all(|name| p(&right, name) < 1e-3), "{:?}", tests(&right));
     let correlated = large.covariances(Variance::Estimated).unwrap().correlated(0.9);
     let named = |pair: [usize; 2]| pair.map(|i| large.covariances(Variance::Apriori).unwrap().parameters[i].1);
     assert!(correlated.iter().any(|found| named(found.pair) == ["k2", "k3"] && found.rho < -0.9), "{correlated:?}");

@@ -26,8 +26,8 @@ fn p_is_the_area_beyond_t_on_both_sides() {
     let solution = adjust(&network, &Options::default()).unwrap();
     let freedom = solution.counts().redundancy() as f64;
     let all = upper_area(0.0, freedom);
-    let tests = solution.significance().unwrap();
     let covariances = solution.covariances(Variance::Estimated).unwrap();
+    let tests = solution.significance(&covariances).unwrap();
     assert_eq!(tests.len(), 8);
     for (k, test) in tests.iter().enumerate() {
         assert!((test.sigma / covariances.interior[(k, k)].sqrt() - 1.0).abs() < 1e-12);

@@ -1,11 +1,14 @@
 //! Gross errors of image points.
 
+use std::collections::BTreeSet;
+
 use calibench_adjust::{Options, Solution, adjust, scale_of};
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 use super::{ALPHA, Cameras};
+use crate::neighbours::are_own;
 use crate::resampled::NEAR;
-use crate::{Calibration, Finding, Verdict};
+use crate::{Calibration, Finding, GrossErrors, Verdict};
 
 /// Residuals (as vectors) beyond so many of their standard deviations are counted: of normal ones `exp(-8)`.
 const BEYOND: f64 = 4.0;
@@ -44,17 +47,46 @@ fn white(solution: &Solution<'_>) -> Vec<[f64; 2]> {
     solution.each_white_residual().collect()
 }
 
-/// More image points were left out than an estimate can bear.
-fn too_many(calibration: &Calibration<'_>) -> Option<Verdict> {
+/// More image points were left out than an estimate can bear, or such as are not wrong for themselves.
+fn wrongly_left_out(calibration: &Calibration<'_>) -> Option<Verdict> {
     let left_out = calibration.found.iter().filter(|found| found.left_out).count();
     let all = calibration.prepared.network.observations.len();
-    let cause = || format!("gross errors: {left_out} of {all} image points were left out, and what is left need not be the right part");
-    (left_out as f64 > LEFT_OUT * all as f64).then(|| Verdict::Doubt(Finding { p: 0.0, moves: None, explains: 0.0 }, cause()))
+    let why = if left_out as f64 > LEFT_OUT * all as f64 {
+        "what is left need not be the right part"
+    } else if calibration.leaves_out_single_points() {
+        return None;
+    } else {
+        "they are off together with their neighbours: lens, board, names or a motion are to be asked"
+    };
+    let cause = format!("gross errors: {left_out} of {all} image points were left out, and {why}");
+    Some(Verdict::Doubt(Finding { p: 0.0, moves: None, explains: 0.0 }, cause))
+}
+
+impl Calibration<'_> {
+    /// Whether residuals are not those of normal errors: more are long than chance makes, or one is longer.
+    pub(crate) fn has_gross_errors(&self) -> bool {
+        let white = white(&self.solution);
+        found(white.iter().copied()).is_some_and(|found| {
+            let longest = white.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+            found.p < ALPHA || found.of as f64 * (-0.5 * (longest / found.scale).powi(2)).exp() < ALPHA
+        })
+    }
+
+    /// Whether any image point was left out.
+    pub(crate) fn leaves_out_any(&self) -> bool {
+        self.found.iter().any(|found| found.left_out)
+    }
+
+    /// Whether the image points that were left out are wrong for themselves, and not off together with their neighbours.
+    pub(crate) fn leaves_out_single_points(&self) -> bool {
+        let left_out: BTreeSet<usize> = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
+        are_own(&self.solution, &left_out)
+    }
 }
 
 /// More residuals are long than chance makes, and the camera is another where they have less weight.
 pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
-    if let Some(verdict) = too_many(calibration) {
+    if let Some(verdict) = wrongly_left_out(calibration) {
         return verdict;
     }
     let Some(Found { scale, beyond, of, p }) = found(white(&calibration.solution).into_iter()) else {
@@ -82,5 +114,10 @@ fn worst(calibration: &Calibration<'_>) -> String {
     let off = length(worst.v);
     // Of accurate points a tenth of a pixel says nothing.
     let digits = if off < 1.0 { 3 } else { 1 };
-    format!("the worst, {target} in {image}, is {off:.digits$} px off; try --snoop")
+    let advice = match calibration.prepared.settings.gross {
+        GrossErrors::Sought => "; they are not wrong for themselves, so that none was left out: --snoop does that",
+        GrossErrors::Kept => "; without --plain those are left out that are wrong for themselves",
+        GrossErrors::Rejected(_) | GrossErrors::Weighted(_) => "",
+    };
+    format!("the worst, {target} in {image}, is {off:.digits$} px off{advice}")
 }

@@ -45,8 +45,12 @@ enum Cameras {
     Changed(Vec<DVector<f64>>),
 }
 
+/// The verdicts on gross errors, and on control, lens and shutter, each by itself.
+pub(crate) type Verdicts = (Verdict, [Allowed; 3]);
+
 /// The verdict after allowing for one more kind of unknown.
-struct Allowed {
+#[derive(Clone, Debug)]
+pub(crate) struct Allowed {
     verdict: Verdict,
     /// No image point is in gross error then.
     is_clean: bool,
@@ -59,15 +63,6 @@ impl Allowed {
 
     fn is_structure(&self) -> bool {
         matches!(self.verdict, Verdict::Doubt(..) | Verdict::Slight(..))
-    }
-
-    /// Whatever was found is no structure.
-    fn sound(self) -> Self {
-        let verdict = match self.verdict {
-            Verdict::Doubt(finding, _) | Verdict::Slight(finding, _) => Verdict::Sound(finding),
-            other => other,
-        };
-        Self { verdict, ..self }
     }
 
     fn explains(&self) -> f64 {
@@ -84,8 +79,10 @@ impl Calibration<'_> {
     ///
     /// Each allows for one more kind of unknown, and asks by an F test whether that is no chance, and how far the camera moves.
     pub fn examine(&mut self) {
-        let (gross, structures) = self.allowed_for();
-        let (gross, [control, lens, shutter]) = overlap::settled(gross, structures);
+        let (gross, structures) = self.allowed_for().clone();
+        let (gross, structures) = overlap::settled(gross, structures);
+        let (gross, [control, lens, shutter]) =
+            if self.is_off_together { overlap::counted(gross, structures) } else { (gross, structures) };
         let all = [
             (Subject::Precision, stated_precision::check(self)),
             (Subject::GrossErrors, gross),
@@ -99,8 +96,12 @@ impl Calibration<'_> {
         (self.impossible, self.rims) = impossible::found(self);
     }
 
-    /// The checks that adjust again; of many image points none, which would take as long and as much memory once more.
-    fn allowed_for(&self) -> (Verdict, [Allowed; 3]) {
+    /// The checks that adjust again, made once; of many image points none, which would take as long and as much memory once more.
+    fn allowed_for(&self) -> &Verdicts {
+        self.allowed.get_or_init(|| self.allow())
+    }
+
+    fn allow(&self) -> Verdicts {
         if self.prepared.network.observations.len() > MOST {
             let why = format!("more than {MOST} image points");
             return (Verdict::Untested(why.clone()), [(); 3].map(|()| Allowed::untested(&why)));
@@ -108,6 +109,18 @@ impl Calibration<'_> {
         let ((gross, control), (lens, shutter)) =
             join(|| join(|| gross::check(self), || control::check(self)), || join(|| lens::check(self), || shutter::check(self)));
         (gross, [control, lens, shutter])
+    }
+
+    /// Whether control, lens or shutter explain so much of the residuals that these are no set of gross errors, however long some are.
+    pub(crate) fn is_structured(&self) -> bool {
+        let (_, structures) = self.allowed_for();
+        structures.iter().any(|allowed| allowed.is_structure() && allowed.explains() > overlap::EXPLAINED)
+    }
+
+    /// Whether control, lens or shutter are in doubt.
+    pub(crate) fn is_doubted(&self) -> bool {
+        let (_, structures) = self.allowed_for();
+        structures.iter().any(|allowed| allowed.verdict.is_doubt())
     }
 
     /// The most likely causes of doubt, first the one that explains most; then what cannot be, and what is hardly known.

@@ -4,7 +4,7 @@ use super::Allowed;
 use crate::Verdict;
 
 /// Share of the variance that a structure must explain to be no shadow of gross errors.
-const EXPLAINED: f64 = 0.5;
+pub(super) const EXPLAINED: f64 = 0.5;
 /// A structure that explains less than this share of what another one does may be a shadow of it.
 const HIDDEN: f64 = 0.8;
 
@@ -21,9 +21,26 @@ pub(super) fn settled(gross: Verdict, structures: [Allowed; 3]) -> (Verdict, [Ve
     }
 }
 
+/// The same where image points do not fit and are not wrong for themselves: something counts, however little it moves the camera. Without a doubt it is the structure
+/// that explains most, or else what does not fit.
+pub(super) fn counted(gross: Verdict, structures: [Verdict; 3]) -> (Verdict, [Verdict; 3]) {
+    let explains = |verdict: &Verdict| match verdict {
+        Verdict::Slight(finding, _) => finding.explains,
+        _ => -1.0,
+    };
+    let most = structures.iter().map(explains).fold(-1.0, f64::max);
+    if gross.is_doubt() || structures.iter().any(Verdict::is_doubt) {
+        return (gross, structures);
+    }
+    if most < 0.0 {
+        return (gross.doubted(), structures);
+    }
+    (gross, structures.map(|verdict| if explains(&verdict) >= most { verdict.doubted() } else { verdict }))
+}
+
 /// Without those that may be shadows of the one that explains `most`; a doubt is a shadow of none but another doubt.
 fn beside(structures: [Allowed; 3], most: f64) -> [Verdict; 3] {
-    let is_doubt = |allowed: &Allowed| matches!(allowed.verdict, Verdict::Doubt(..));
+    let is_doubt = |allowed: &Allowed| allowed.verdict.is_doubt();
     let strongest_counts = structures.iter().any(|allowed| is_doubt(allowed) && allowed.explains() >= most);
     structures.map(|allowed| {
         let is_shadow = allowed.is_structure() && allowed.explains() < HIDDEN * most && (strongest_counts || !is_doubt(&allowed));
@@ -79,6 +96,21 @@ mod tests {
         ] {
             let allowed = structures.clone().map(|verdict| Allowed { verdict, is_clean: false });
             let (gross, others) = settled(gross, allowed);
+            assert_eq!(letters(&[gross]) + &letters(&others), expected, "{structures:?}");
+        }
+    }
+
+    #[test]
+    fn something_counts_where_points_are_off_together() {
+        for (gross, structures, expected) in [
+            (slight(0.0), [slight(0.6), slight(0.7), sound()], "ssD-"),
+            (sound(), [sound(), sound(), slight(0.6)], "---D"),
+            (slight(0.0), [sound(), Verdict::Untested(String::new()), sound()], "D-?-"),
+            (slight(0.0), [doubt(0.6), slight(0.7), sound()], "sDs-"),
+            (doubt(0.0), [slight(0.3), sound(), sound()], "Ds--"),
+            (sound(), [sound(), sound(), sound()], "----"),
+        ] {
+            let (gross, others) = counted(gross, structures.clone());
             assert_eq!(letters(&[gross]) + &letters(&others), expected, "{structures:?}");
         }
     }

@@ -12,6 +12,8 @@ use crate::resampled::GROUPS;
 const BY_ROWS: f64 = 1.2;
 /// Share of the variance that both must explain to be more than residuals of neighbours that belong together, as those of real corners do.
 const MUCH: f64 = 0.5;
+/// Share of the variance from which a motion counts, however little it moves the camera to first order: no image has one pose then.
+const NEARLY_ALL: f64 = 0.8;
 
 /// The same observations with a pose that changes evenly from the first row of an image to the last.
 pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
@@ -37,7 +39,19 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
         cause(is_by_rows).into()
     };
     let allowed = calibration.judged(&richer, || moving.optimism(GROUPS, redundancy), words);
-    if is_by_rows || allowed.explains() > MUCH { allowed } else { allowed.sound() }
+    counted(allowed, is_by_rows)
+}
+
+/// What is found counts by how much it explains, and by whether rows explain it better than columns.
+fn counted(allowed: Allowed, is_by_rows: bool) -> Allowed {
+    let explains = allowed.explains();
+    let Allowed { verdict, is_clean } = allowed;
+    let verdict = match explains {
+        explains if explains > NEARLY_ALL => verdict.doubted(),
+        explains if is_by_rows || explains > MUCH => verdict,
+        _ => verdict.sound(),
+    };
+    Allowed { verdict, is_clean }
 }
 
 /// A turn along rows and one along columns picture nearly the same, and so does a sheet that bends.
@@ -46,5 +60,22 @@ fn cause(is_by_rows: bool) -> &'static str {
         "a rolling shutter: rows of an image were exposed one after the other while camera or testfield moved; hold both still"
     } else {
         "something differs within each image: a rolling shutter with a camera or testfield that moved, or a testfield that bends from image to image"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Finding, Verdict};
+
+    #[test]
+    fn a_motion_that_explains_nearly_all_counts_however_little_it_moves_the_camera() {
+        let slight = |explains| Verdict::Slight(Finding { p: 1e-9, moves: Some(1.0), explains }, "cause".into());
+        let of = |explains, is_by_rows| counted(Allowed { verdict: slight(explains), is_clean: true }, is_by_rows).verdict;
+        for is_by_rows in [true, false] {
+            assert!(matches!(of(0.81, is_by_rows), Verdict::Doubt(..)));
+            assert!(matches!(of(0.79, is_by_rows), Verdict::Slight(..)));
+        }
+        assert!(matches!(of(0.3, true), Verdict::Slight(..)) && matches!(of(0.3, false), Verdict::Sound(_)));
     }
 }

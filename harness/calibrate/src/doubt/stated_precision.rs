@@ -22,7 +22,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
         return Verdict::Untested("there is no redundancy".into());
     };
     // Gross errors that Huber's weights hold back say nothing of the others.
-    let robust = settings.huber.and_then(|_| calibration.solution.scale());
+    let robust = settings.gross.huber().and_then(|_| calibration.solution.scale());
     let sigma0 = robust.or(calibration.solution.sigma0()).unwrap_or(1.0);
     let finding = Finding { p: chi.sf(redundancy * sigma0 * sigma0), moves: None, explains: 0.0 };
     if finding.p >= ALPHA || sigma0 < STATED {

@@ -57,7 +57,7 @@ pub(super) fn better(
 }
 
 /// Whether another start may help.
-fn is_of_start(error: &CalibrationError) -> bool {
+pub(crate) fn is_of_start(error: &CalibrationError) -> bool {
     matches!(error, CalibrationError::NoPose { .. } | CalibrationError::Convert(_) | CalibrationError::Start(_))
 }
 

@@ -61,7 +61,7 @@ impl Sample {
             views,
             is_part,
             sigma: settings.sigma(),
-            huber: settings.start_huber(),
+            huber: settings.gross.of_start(),
             finder: pose_finder(settings),
         })
     }

@@ -7,7 +7,7 @@ use calibench_model::{ControlRow, PixelPoint, Points};
 use super::LENS;
 use super::raster::Raster;
 use super::{scale, shape};
-use crate::{BoardShape, Calibration, Optics, Settings, model};
+use crate::{BoardShape, Calibration, GrossErrors, Optics, Settings, model};
 
 /// Other inputs in place of those given.
 pub(super) struct Alternative<'a> {
@@ -26,7 +26,7 @@ pub(super) fn all<'a>(
     found: Option<&Calibration<'_>>,
 ) -> Vec<Alternative<'a>> {
     // Gross errors and the bend of a board are another question.
-    let settings = Settings { snoop: false, shape: BoardShape::Flat, ..settings.clone() };
+    let settings = Settings { gross: GrossErrors::Kept, shape: BoardShape::Flat, ..settings.clone() };
     let given = |kind, what: String| Alternative {
         kind,
         what,
@@ -68,7 +68,7 @@ pub(super) fn richer<'a>(points: &'a Points, control: &'a [ControlRow], settings
     if !settings.cameras.iter().any(is_other) {
         return None;
     }
-    let settings = Settings { snoop: false, shape: BoardShape::Flat, ..with_model(settings, "opencv5") };
+    let settings = Settings { gross: GrossErrors::Kept, shape: BoardShape::Flat, ..with_model(settings, "opencv5") };
     Some(Alternative { kind: "", what: String::new(), points: Cow::Borrowed(points), control: Cow::Borrowed(control), settings })
 }
 

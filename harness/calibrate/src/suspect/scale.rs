@@ -7,7 +7,7 @@ use calibench_diagnostics::plain;
 use calibench_model::{ControlRow, Points};
 use nalgebra::Point3;
 
-use crate::{BoardShape, Settings, prepare};
+use crate::{BoardShape, GrossErrors, Settings, prepare};
 
 /// A share by which the scale must differ from one to be another.
 const OTHER: f64 = 5e-3;
@@ -27,7 +27,7 @@ pub(super) fn other(control: &[ControlRow], settings: &Settings, points: &Points
     if board.len() < 4 || others.len() < 3 {
         return None;
     }
-    let free = Settings { shape: BoardShape::Free, snoop: false, ..settings.clone() };
+    let free = Settings { shape: BoardShape::Free, gross: GrossErrors::Kept, ..settings.clone() };
     let prepared = prepare(points.clone(), control, &free).ok()?;
     let (solution, ..) = prepared.solution().ok()?;
     let names = prepared.network.points.iter().map(|point| point.name.as_str());

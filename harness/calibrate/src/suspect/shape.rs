@@ -7,7 +7,7 @@ use calibench_model::{ControlRow, Points, upper_median};
 use nalgebra::Point3;
 
 use super::raster::Raster;
-use crate::{BoardShape, Settings, prepare};
+use crate::{BoardShape, GrossErrors, Settings, prepare};
 
 /// A share by which steps must differ from what is stated to be others.
 const OTHER: f64 = 5e-3;
@@ -29,7 +29,7 @@ struct Found([Vec<f64>; 2]);
 impl Found {
     /// From a free network; the median over all rows or columns.
     fn of(raster: &Raster, control: &[ControlRow], settings: &Settings, points: &Points) -> Option<Self> {
-        let free = Settings { shape: BoardShape::Free, snoop: false, ..settings.clone() };
+        let free = Settings { shape: BoardShape::Free, gross: GrossErrors::Kept, ..settings.clone() };
         let prepared = prepare(points.clone(), control, &free).ok()?;
         let (solution, ..) = prepared.solution().ok()?;
         let names = prepared.network.points.iter().map(|point| point.name.as_str());

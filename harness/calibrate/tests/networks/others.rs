@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_calibrate::{Optics, Settings, prepare};
+use calibench_calibrate::{GrossErrors, Optics, Risk, Settings, prepare};
 use calibench_exchange::{read_control, read_points};
 use calibench_model::Points;
 use calibench_model::camera::{CameraModel, ImageSize};
@@ -41,7 +41,7 @@ fn gross_errors_lead_no_wide_lens_astray() {
         let control = read_control(&folder.join(format!("{name}.ctl.csv"))).unwrap();
         for share in [0.0, 0.2, 0.33] {
             let optics = Optics { model: Some("opencv5".into()), ..Optics::new(ImageSize { width, height }) };
-            let settings = Settings { snoop: true, ..Settings::new(vec![optics]) };
+            let settings = Settings { gross: GrossErrors::Rejected(Risk::EachPoint), ..Settings::new(vec![optics]) };
             let (points, spoilt) = spoilt(&points, share, [width, height].map(|side| f64::from(side) / 20.0));
             let prepared = prepare(points, &control, &settings).unwrap();
             let found = prepared.adjust().unwrap();

@@ -1,7 +1,7 @@
 //! What a calibration says of residuals that its model does not explain.
 
 use calibench_adjust::Use;
-use calibench_calibrate::{BoardShape, Calibration, Checked, Prepared, Settings, Subject, Verdict, prepare};
+use calibench_calibrate::{BoardShape, Calibration, Checked, GrossErrors, Prepared, Risk, Settings, Subject, Verdict, prepare};
 use calibench_model::camera::{Camera, CameraModel, OpenCvFisheye};
 use calibench_model::{ControlRow, PixelPoint, PointRef, Points, Pose};
 use nalgebra::{Rotation3, Vector3};
@@ -197,7 +197,9 @@ fn up_to_a_third_of_gross_errors_is_left_out_or_held_back() {
         for share in [0.02, 0.1, 0.2, 0.3] {
             let points = spoilt(&scene, share);
             let wrong = scene.points().rows().zip(points.rows()).filter(|(a, b)| a.start.position != b.start.position).count();
-            let prepared = prepare(points, &scene.known(), &Settings { snoop: true, sigma_px: None, ..tested() }).unwrap();
+            let prepared =
+                prepare(points, &scene.known(), &Settings { gross: GrossErrors::Rejected(Risk::EachPoint), sigma_px: None, ..tested() })
+                    .unwrap();
             let (left_out, error, sigma, doubts) = examined(&prepared, |calibration| {
                 let error = calibration.camera(0).parameters()[0].value - 1450.0;
                 let left_out = calibration.found.iter().filter(|found| found.left_out).count();
@@ -210,7 +212,11 @@ fn up_to_a_third_of_gross_errors_is_left_out_or_held_back() {
         }
     }
     let prepared = noisy(board(lens()), 9);
-    let prepared = prepare(spoilt(&prepared, 0.7), &prepared.known(), &Settings { snoop: true, sigma_px: None, ..tested() });
+    let prepared = prepare(
+        spoilt(&prepared, 0.7),
+        &prepared.known(),
+        &Settings { gross: GrossErrors::Rejected(Risk::EachPoint), sigma_px: None, ..tested() },
+    );
     assert!(prepared.is_err() || !doubts(&prepared.unwrap()).is_empty(), "no camera comes of a third of the points without a word");
 }
 
@@ -218,7 +224,7 @@ fn up_to_a_third_of_gross_errors_is_left_out_or_held_back() {
 #[test]
 fn huber_s_bound_follows_the_residuals() {
     let scene = Scene { sigma: 0.2, ..noisy(board(lens()), 11) };
-    let prepared = scene.prepared(&Settings { huber: Some(3.0), sigma_px: None, ..tested() }).unwrap();
+    let prepared = scene.prepared(&Settings { gross: GrossErrors::Weighted(3.0), sigma_px: None, ..tested() }).unwrap();
     let calibration = prepared.adjust().unwrap();
     let less = calibration.solution.each_residual().filter(|residual| matches!(residual.used, Use::Downweighted(_))).count();
     // Of normal residuals exp(-4.5), 1.1 %.

@@ -1,6 +1,8 @@
 //! Calibrations of networks with a known truth.
 
+mod broken;
 mod doubts;
+mod gross;
 mod known;
 mod network;
 mod next;

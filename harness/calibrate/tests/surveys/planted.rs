@@ -1,6 +1,8 @@
 //! Inputs of known kind, drawn anew with each seed: sound ones, and such as are something else than they say.
 
-use calibench_calibrate::{BoardShape, CalibrationError, DatumChoice, Optics, Settings, Suspected, calibrate, prepare, suspected};
+use calibench_calibrate::{
+    BoardShape, CalibrationError, DatumChoice, GrossErrors, Optics, Risk, Settings, Suspected, calibrate, prepare, suspected,
+};
 use calibench_model::camera::{Camera, DoubleSphere, ImageSize, OpenCv, OpenCvFisheye};
 use calibench_model::{ControlRow, PixelPoint, Points, Pose};
 use nalgebra::{Point3, Vector3};
@@ -22,7 +24,9 @@ pub const SOUND: [Kind; 16] = [
     ("board, tested for a bend", |seed| whole(&noisy(board(lens()), seed), Settings { shape: BoardShape::Tested, ..settings("opencv5") })),
     ("board, photogrammetric", |seed| whole(&noisy(board(square()), seed), settings("photogrammetric"))),
     ("board, Metashape's model", |seed| whole(&noisy(board(square()), seed), settings("metashape"))),
-    ("board, gross errors sought", |seed| whole(&noisy(board(lens()), seed), Settings { snoop: true, ..settings("opencv5") })),
+    ("board, gross errors sought", |seed| {
+        whole(&noisy(board(lens()), seed), Settings { gross: GrossErrors::Rejected(Risk::EachPoint), ..settings("opencv5") })
+    }),
     ("board beyond the frame", |seed| whole(&noisy(full_frame(), seed), settings("opencv5"))),
     ("tags", |seed| whole(&of_tags(18.0, seed), settings("opencv5"))),
     ("fisheye", |seed| {

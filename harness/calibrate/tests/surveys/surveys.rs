@@ -2,7 +2,7 @@
 
 use calibench_adjust::{Status, Variance};
 use calibench_calibrate::choice::ModelChoice;
-use calibench_calibrate::{CalibrationError, DatumChoice, Optics, Prior, Settings, parameters};
+use calibench_calibrate::{CalibrationError, DatumChoice, GrossErrors, Optics, Prior, Risk, Settings, parameters};
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
 use glob::Pattern;
@@ -53,7 +53,7 @@ fn gross_errors_are_looked_for_when_asked() {
         row.start.position.x += if index == 100 { 2.0 } else { 0.0 };
         points.push(row.image, row.target, row.start);
     }
-    let settings = Settings { snoop: true, sigma_px: Some(0.05), ..settings("opencv5") };
+    let settings = Settings { gross: GrossErrors::Rejected(Risk::EachPoint), sigma_px: Some(0.05), ..settings("opencv5") };
     let prepared = calibench_calibrate::prepare(points, &scene.known(), &settings).unwrap();
     let found = prepared.adjust().unwrap();
     assert!(found.found.iter().any(|found| found.observation == 100 && found.left_out), "{:?}", found.found);

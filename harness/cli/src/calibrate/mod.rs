@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::{
-    BoardShape, Calibration, CalibrationError, DatumChoice, Discs, MOST_TRIED, Settings, Suspected, calibrate, prepare, suspected,
+    BoardShape, Calibration, CalibrationError, DatumChoice, Discs, GrossErrors, MOST_TRIED, Risk, Settings, Suspected, calibrate, prepare,
+    suspected,
 };
 use calibench_cameras::inputs_of;
 use calibench_exchange::{PointFile, read_control, read_observed_stations};
@@ -33,6 +34,7 @@ mod photographs;
 use cameras::Cameras;
 
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Calibrate {
     /// Photographs of a board, in place of --points and --control
     #[arg(value_name = "PHOTO", requires = "pictured")]
@@ -40,10 +42,13 @@ pub struct Calibrate {
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
     #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos", group = "pictured")]
     chessboard: Option<Chessboard>,
-    /// The board: 9x6:25, charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml); lengths in object units
+    /// The board: 9x6:25, charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, gridboard:5x7:40:10:DICT_6X6_250, circles:7x5:20, circles:10x10:20:10:20@r10c1, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml); lengths in object units
     #[arg(long, value_name = "BOARD", value_parser = board_of, requires = "photos", group = "pictured")]
     board: Option<Board>,
-    /// The method that measures the board's points [default: parametric_corner; of circles and rings ellipse_edges]
+    /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own
+    #[arg(long, requires = "photos")]
+    all: bool,
+    /// The method that measures the board's points [default: parametric_corner; of circles and rings ellipse_edges, of corners of markers that stand alone parametric_junction]
     #[arg(short, long, value_name = "METHOD", requires = "photos")]
     method: Option<String>,
     #[command(flatten)]
@@ -83,9 +88,12 @@ pub struct Calibrate {
     /// Robust weights: bound in standard deviations of an image point, as the residuals show them, as in 2
     #[arg(long, value_name = "K", value_parser = positive, allow_negative_numbers = true)]
     huber: Option<f64>,
-    /// Leave out image points that Baarda's test rejects, one after the other; many gross errors, which hide one another, first and together
+    /// Leave out all image points that Baarda's test rejects, one of a thousand good ones too [default: where residuals are not those of normal errors, points that are wrong for themselves]
     #[arg(long, conflicts_with = "huber")]
     snoop: bool,
+    /// Keep all image points with equal weights, whatever their errors are
+    #[arg(long, conflicts_with_all = ["huber", "snoop"])]
+    plain: bool,
     /// Observed poses: a station file with sX0,sY0,sZ0 (object units) or sx_deg,sy_deg,sz_deg (about the camera's axes) or both
     #[arg(long, value_name = "CSV")]
     poses: Option<PathBuf>,
@@ -183,7 +191,7 @@ impl Calibrate {
                 })
             }
             (_, _, Some(board)) => {
-                let finder = finder(board)?;
+                let finder = finder(board)?.of_each(self.all);
                 let (Corners { points, lost, photos, doubts }, reading) =
                     photographs::corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
@@ -202,8 +210,7 @@ impl Calibrate {
         Ok(Settings {
             datum: self.datum.clone(),
             shape: self.board_shape,
-            huber: self.huber,
-            snoop: self.snoop,
+            gross: self.gross(),
             sigma_px: self.sigma,
             limit_px: self.limit,
             covariances: self.covariances,
@@ -211,6 +218,15 @@ impl Calibrate {
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
             ..Settings::new(self.cameras.optics(photos)?)
         })
+    }
+
+    fn gross(&self) -> GrossErrors {
+        match self.huber {
+            Some(bound) => GrossErrors::Weighted(bound),
+            None if self.snoop => GrossErrors::Rejected(Risk::EachPoint),
+            None if self.plain => GrossErrors::Kept,
+            None => GrossErrors::Sought,
+        }
     }
 
     fn tell(&self, calibration: &Calibration<'_>, doubts: &[String], suspects: &[Suspected]) -> Result<(), Failure> {

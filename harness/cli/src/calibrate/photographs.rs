@@ -23,22 +23,24 @@ pub fn corners(
     let photos = reader.photos();
     let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
     let found = finder.measure(&reader, (&method.label, operator.as_ref()), &|| progress.step())?;
-    let mut seen = 0;
-    for (path, Corners { points, lost, doubts, .. }) in photos.iter().zip(&found) {
+    let (mut seen, mut views) = (0, 0);
+    for (path, Corners { points, lost, doubts, photos }) in photos.iter().zip(&found) {
         doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
         seen += usize::from(!points.is_empty());
+        views += if points.is_empty() { 0 } else { photos.len() };
         match (lost.first(), lost.len()) {
             (Some(LostRow { target, reason, .. }), 1) if target.is_empty() => say!("{}: {reason}", path.display()),
             (Some(_), count) => say!("{}: {count} points were rejected by {}", path.display(), method.label),
             (None, _) => {}
         }
     }
-    progress.finish(&format!("the board was found in {seen} of {} photographs, measured by {}", photos.len(), method.label));
+    let times = if finder.is_of_each() { format!(", {views} times") } else { String::new() };
+    progress.finish(&format!("the board was found in {seen} of {} photographs{times}, measured by {}", photos.len(), method.label));
     say_notes([&method]);
     if seen == 0 {
         return Err(Failure::input(
-            "no point was measured: no board was found (of a chessboard all inner corners must be visible, counted as COLUMNSxROWS), or the method \
-             rejected every point",
+            "no point was measured: no board was found (of a chessboard all inner corners must be visible, counted as COLUMNSxROWS; `calibench detect \
+             PHOTO --board unknown` says what board is there), or the method rejected every point",
         ));
     }
     Ok((found.into_iter().collect(), reader.reading()))

@@ -1,4 +1,4 @@
-//! `calibench init`: a project of one's own with a gate.
+//! `calibench init`: a project of one's own with a gate, of operators or of a calibrator.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,12 +10,17 @@ use super::context::Context;
 use crate::deliver::print;
 use crate::failure::Failure;
 
-/// What is written, by its path in the project.
-const FILES: [(&str, &str); 4] = [
-    ("README.md", include_str!("README.md")),
-    (".gitignore", "/records/\n"),
-    ("scenarios/first/corners.toml", include_str!("corners.toml")),
-    ("reference/baselines/ceilings.toml", include_str!("ceilings.toml")),
+/// What is written in either case, by its path in the project.
+const FILES: [(&str, &str); 2] = [(".gitignore", "/records/\n"), ("reference/baselines/ceilings.toml", include_str!("ceilings.toml"))];
+/// For operators.
+const OPERATORS: [(&str, &str); 2] =
+    [("README.md", include_str!("README.md")), ("scenarios/first/corners.toml", include_str!("corners.toml"))];
+/// For a calibrator.
+const CALIBRATOR: [(&str, &str); 4] = [
+    ("README.md", include_str!("calibrator.md")),
+    ("scenarios/first/board.toml", include_str!("board.toml")),
+    ("methods/mine.toml", include_str!("mine.toml")),
+    ("methods/mine.py", include_str!("mine.py")),
 ];
 
 #[derive(Args)]
@@ -23,6 +28,9 @@ pub struct Init {
     /// The folder, new or empty
     #[arg(value_name = "DIR")]
     folder: PathBuf,
+    /// For a calibration system of one's own: a board in noise, and a program to put it in
+    #[arg(long)]
+    calibrator: bool,
 }
 
 impl Init {
@@ -33,7 +41,9 @@ impl Init {
             return Err(Failure::input(format!("{}: holds `{first}`; expected a new or an empty folder", folder.display())));
         }
         let schema = format!("{:#}\n", calibench_scenario::schema::schema(context.registry()?));
-        for (name, text) in FILES.into_iter().chain([("scenarios/scenario.schema.json", schema.as_str())]) {
+        let own: &[(&str, &str)] = if self.calibrator { &CALIBRATOR } else { &OPERATORS };
+        let all = FILES.iter().chain(own).copied().chain([("scenarios/scenario.schema.json", schema.as_str())]);
+        for (name, text) in all {
             let path = folder.join(name);
             path.parent()
                 .map_or(Ok(()), fs::create_dir_all)

@@ -45,9 +45,12 @@ pub struct Judge {
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
     #[arg(long, value_name = "COLUMNSxROWS:SIDE", required_unless_present_any = ["board", "control"], conflicts_with_all = ["board", "control"])]
     chessboard: Option<Chessboard>,
-    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml)
+    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, gridboard:5x7:40:10:DICT_6X6_250, circles:7x5:20, circles:10x10:20:10:20@r10c1, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml)
     #[arg(long, value_name = "BOARD", value_parser = board_of, conflicts_with = "control")]
     board: Option<Board>,
+    /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own
+    #[arg(long, requires = "photos")]
+    all: bool,
     /// In place of a chessboard: points of known object coordinates, as of a house, whose names the files of --points use: CSV with target,X,Y,Z and, if known, sX,sY,sZ
     #[arg(long, value_name = "CSV", requires = "points")]
     control: Option<PathBuf>,

@@ -5,6 +5,7 @@ use calibench_images::Reading;
 use calibench_judge::{CornerFile, Material, Options, Remaining, remaining};
 use calibench_model::boards::{Board, Chessboard};
 use calibench_model::escape::{self, code};
+use calibench_model::views::photo_of;
 use calibench_photographs::names::names;
 use calibench_records::judgement::{JUDGEMENT, Row, Summary, Trusted, write_rows};
 use calibench_records::points::RunInfo;
@@ -39,7 +40,11 @@ impl Judge {
         folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
         let title = if self.points.is_empty() { "Photographs judged" } else { "Corners judged" };
         let names = names(&self.photos);
-        let photos = names.iter().zip(&self.photos).map(|(name, path)| (name.as_str(), path.as_path(), reading)).collect();
+        let whole = || names.iter().zip(&self.photos).map(|(name, path)| (name.as_str(), path.as_path(), reading));
+        // Of several boards in a photograph each is a view.
+        let of_view = |view: &str| whole().find(|(name, ..)| photo_of(view) == Some(*name)).map(|(_, path, reading)| (path, reading));
+        let views = material.views.iter().filter_map(|view| Some((&**view, of_view(view)?)));
+        let photos = whole().chain(views.map(|(view, (path, reading))| (view, path, reading))).collect();
         let corners = trusted.as_ref().map_or_else(Vec::new, |trusted| left((material, options), summary, trusted));
         let measured = Measured { corners, photos, size: Some(material.size) };
         let page = page(title, &text, (summary, trusted.as_ref()), (found.as_ref(), doubts), measured);

@@ -17,7 +17,7 @@ use crate::failure::Failure;
 impl Judge {
     /// All points of all photographs in the hands of all methods, and what is in doubt of where the board was found.
     pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<(Material, Vec<String>, Reading), Failure> {
-        let finder = finder(board)?;
+        let finder = finder(board)?.of_each(self.all);
         let texts = if self.methods.is_empty() { usual_methods(finder.kind(), self.camera.is_some()) } else { self.methods.clone() };
         let methods = context.methods_of_boards(&texts, finder.kind())?;
         let needed = 2 * HALF;

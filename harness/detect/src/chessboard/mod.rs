@@ -66,7 +66,7 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
     let points = seen.filter_map(point).collect();
     let unseen = board.seen.iter().filter(|seen| !**seen).count();
     let doubts = if unseen > 0 { vec![Doubt::Unseen { corners: unseen }] } else { Vec::new() };
-    Ok(Found { points, markers: 0, doubts })
+    Ok(Found { points, markers: 0, doubts, light: false })
 }
 
 /// The largest such board at one level: pictures of boards may be in the picture, too. Where there is none, `other` becomes the board of other counts that the

@@ -44,6 +44,14 @@ pub(crate) fn detect(image: &Image, puzzle: &Puzzle, layout: &Layout) -> Result<
     })
 }
 
+/// All boards that are seen, the largest first.
+pub(crate) fn detect_all(image: &Image, puzzle: &Puzzle, layout: &Layout) -> Vec<crate::Found> {
+    parts::detect_all(image, layout, READING, |sheet, image| {
+        let dots = sheet.dots(image);
+        decode(sheet, &dots, puzzle).map(|decoded| sight(sheet, &dots, decoded, puzzle, layout))
+    })
+}
+
 /// What a grid shows of the board.
 fn sight(sheet: &Sheet, dots: &[Dot], decoded: Decoded, puzzle: &Puzzle, layout: &Layout) -> Sight {
     let mut votes: BTreeMap<[i32; 2], [usize; 2]> = BTreeMap::new();

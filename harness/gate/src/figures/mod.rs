@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use calibench_records::figures::{FigureName, Group};
+use calibench_records::figures::{Better, FigureName, Group, Quantity};
 
 use super::adjusted::{FigureKey, Numbers};
 use super::baseline_file::{BaselineError, Kind, Row};
@@ -146,7 +146,7 @@ impl Kept for FigureSums {
             let rounding = largest.get(&(set, group)).map_or(0.0, |largest| NOTHING * largest);
             let both_nothing = old.count == new.count && old.is_within(rounding) && new.is_within(rounding);
             if !both_nothing && !old.same(new, group) {
-                findings.extend(judged(group, old, new, finding).map(|found| found.at(name.as_str())));
+                findings.extend(judged(&key.1, old, new, finding).map(|found| found.at(name.as_str())));
             }
         }
         let new = now.0.keys().filter(|key| !self.0.contains_key(*key)).count();
@@ -168,12 +168,12 @@ fn is_error(group: Group) -> bool {
 
 /// What changed of a figure, and what of it is worse.
 fn judged(
-    group: Group,
+    figure: &FigureName,
     old: &FigureSum,
     new: &FigureSum,
     finding: &dyn Fn(Verdict, &'static str, String) -> Finding,
 ) -> impl Iterator<Item = Finding> {
-    let mut findings = Vec::new();
+    let (mut findings, group) = (Vec::new(), figure.group());
     if new.count < old.count {
         let message = "fewer adjustments give this figure".to_owned();
         findings.push(finding(Verdict::Fails, "adjusted", message).figures(old.count as f64, new.count as f64));
@@ -183,6 +183,16 @@ fn judged(
         && (b.is_nan() || b > a * (1.0 + FIGURE_GROWTH))
     {
         findings.push(finding(Verdict::Fails, "error", format!("worse by more than {} %", 100.0 * FIGURE_GROWTH)).figures(a, b));
+    }
+    if figure.quantity() == Quantity::IsWrongAndSilent && new.mean > old.mean {
+        findings.push(finding(Verdict::Fails, "silent", "wrong without a word more often".into()).figures(old.mean, new.mean));
+    }
+    // Of mean squares half the logarithm: as of their roots.
+    let from_one = |sum: &FigureSum| 0.5 * sum.mean.ln().abs();
+    let (before, now) = (from_one(old), from_one(new));
+    if figure.quantity().entry().better == Better::One && (now.is_nan() || now > before + SIGMA_DRIFT) {
+        let message = format!("errors fit what is stated less, by more than {} %", 100.0 * SIGMA_DRIFT);
+        findings.push(finding(Verdict::Fails, "stated", message).figures(old.mean, new.mean));
     }
     match (old.sigma, new.sigma) {
         (Some(a), None) => {

@@ -1,7 +1,5 @@
 //! Figures of adjustments, summed and judged by hand.
 
-use calibench_records::figures::Quantity;
-
 use super::*;
 use crate::{Cells, Coordinates};
 
@@ -183,7 +181,7 @@ fn the_misfit_is_the_logarithm_of_error_over_standard_deviation() {
 
 fn found(group: Group, old: FigureSum, new: FigureSum) -> Vec<(Verdict, &'static str, Option<f64>, Option<f64>)> {
     let make = |verdict, metric, message| Finding::new(verdict, "f/s", "m", metric, message);
-    judged(group, &old, &new, &make).map(|f| (f.verdict, f.metric, f.baseline, f.now)).collect()
+    judged(&any(group), &old, &new, &make).map(|f| (f.verdict, f.metric, f.baseline, f.now)).collect()
 }
 
 #[test]
@@ -218,6 +216,25 @@ fn errors_may_move_from_standard_deviations_by_a_twentieth() {
     assert!((verdict, metric, old) == (Verdict::Fails, "sigma", Some(0.5)) && new.unwrap().is_nan());
     assert_eq!(found(Group::Iop, with(0.5), sum(5.0, 0.1, Some(0.5), None)), [(Verdict::Fails, "sigma", Some(0.5), Some(0.0))]);
     assert_eq!(found(Group::Iop, sum(5.0, 0.1, Some(0.5), None), with(0.1))[0].0, Verdict::Changed, "there was none");
+}
+
+/// Mean squares of errors in stated standard deviations are better near one, on either side; to be wrong without a word is never better.
+#[test]
+fn what_is_stated_is_held_to_the_errors() {
+    let of = |quantity: Quantity, old: f64, new: f64| {
+        let [old, new] = [old, new].map(|mean| sum(mean, 0.0, None, None));
+        let finding = |verdict, metric, message| Finding::new(verdict, "f/s", "m", metric, message);
+        let found: Vec<_> = judged(&quantity.into(), &old, &new, &finding).collect();
+        (found.len(), found[0].verdict, found[0].metric)
+    };
+    for (old, new) in [(1.26, 11.3), (1.26, 0.14), (1.0, 1.12), (1.0, 0.9), (1.0, 0.0), (1.2, f64::NAN)] {
+        assert_eq!(of(Quantity::SquareOverStated, old, new), (1, Verdict::Fails, "stated"), "{old} {new}");
+    }
+    for (old, new) in [(1.26, 1.1), (11.3, 1.26), (0.9, 1.1), (1.0, 1.09)] {
+        assert_eq!(of(Quantity::SquareOverStatedParameters, old, new), (1, Verdict::Changed, "figure"), "{old} {new}");
+    }
+    assert_eq!(of(Quantity::IsWrongAndSilent, 0.0, 0.1), (1, Verdict::Fails, "silent"));
+    assert_eq!(of(Quantity::IsWrongAndSilent, 0.7, 0.1), (1, Verdict::Changed, "figure"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Boards that are photographed for calibration: what is printed on them, and the names and places of their points.
 //!
-//! A kind of board is a file with a struct of checked parameters and its `layout`, a variant of [`Board`] and a line of [`KINDS`].
+//! A kind of board is a file with a struct of checked parameters and its `layout`, a variant of [`Board`] and a line of [`KINDS`]; the tests of every kind walk [`examples`].
 
 mod aprilgrid;
 mod charuco;
@@ -8,7 +8,9 @@ mod chessboard;
 mod circles;
 mod dictionary;
 mod dotted;
+mod gridboard;
 mod layout;
+mod marks;
 mod puzzle;
 mod rings;
 mod text;
@@ -23,10 +25,12 @@ pub use chessboard::Chessboard;
 pub use circles::Circles;
 pub use dictionary::{Dictionary, Identified};
 pub use dotted::Dotted;
+pub use gridboard::GridBoard;
 pub use layout::{BoardPoint, Layout, Marker, Shape, marker_shapes, square_marker};
+pub use marks::{Form, Mark, Marks};
 pub use puzzle::{Puzzle, PuzzleCodes};
 pub use rings::{Rings, least_rotation, ring_codes};
-pub use text::KINDS;
+pub use text::{KINDS, examples};
 
 /// A board with coded or uncoded marks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +41,9 @@ pub enum Board {
     Charuco(Charuco),
     /// Rows of AprilTags.
     AprilGrid(AprilGrid),
-    /// Rows of circles.
+    /// Rows of ArUco markers.
+    GridBoard(GridBoard),
+    /// Rows of circles, with an origin or without.
     Circles(Circles),
     /// Rows of ring codes.
     Rings(Rings),
@@ -57,6 +63,7 @@ impl Board {
             Self::Chessboard(board) => board.layout(),
             Self::Charuco(board) => board.layout(),
             Self::AprilGrid(board) => board.layout(),
+            Self::GridBoard(board) => board.layout(),
             Self::Circles(board) => board.layout(),
             Self::Rings(board) => board.layout(),
             Self::Puzzle(board) => board.layout(),
@@ -70,6 +77,7 @@ impl Board {
             Self::Chessboard(_) => "chessboard",
             Self::Charuco(_) => "charuco",
             Self::AprilGrid(_) => "aprilgrid",
+            Self::GridBoard(_) => "gridboard",
             Self::Circles(Circles { asymmetric: true, .. }) => "acircles",
             Self::Circles(_) => "circles",
             Self::Rings(_) => "rings",
@@ -79,10 +87,11 @@ impl Board {
     }
 
     /// Whether its marks say which they are: a part of it is enough to number its points.
-    pub const fn is_coded(&self) -> bool {
+    pub fn is_coded(&self) -> bool {
         match self {
-            Self::Charuco(_) | Self::AprilGrid(_) | Self::Rings(_) | Self::Puzzle(_) | Self::Dotted(_) => true,
-            Self::Chessboard(_) | Self::Circles(_) => false,
+            Self::Charuco(_) | Self::AprilGrid(_) | Self::GridBoard(_) | Self::Rings(_) | Self::Puzzle(_) | Self::Dotted(_) => true,
+            Self::Circles(circles) => circles.is_coded(),
+            Self::Chessboard(_) => false,
         }
     }
 
@@ -91,6 +100,7 @@ impl Board {
         match self {
             Self::Charuco(board) => Some((board.dictionary, 1)),
             Self::AprilGrid(board) => Some((board.dictionary, board.border)),
+            Self::GridBoard(board) => Some((board.dictionary, board.border)),
             Self::Chessboard(_) | Self::Circles(_) | Self::Rings(_) | Self::Puzzle(_) | Self::Dotted(_) => None,
         }
     }

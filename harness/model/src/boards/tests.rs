@@ -11,7 +11,7 @@ fn area(shape: &Shape) -> f64 {
 }
 
 fn all() -> impl Iterator<Item = (&'static str, Board, Layout)> {
-    KINDS.into_iter().map(|(name, _, example)| {
+    examples().map(|(name, example)| {
         let board: Board = example.parse().unwrap();
         (name, board, board.layout().unwrap())
     })
@@ -48,11 +48,14 @@ fn boards_are_written_as_they_are_read() {
     let more = [
         "charuco:8x5:30:21:DICT_5X5_100:7:legacy",
         "aprilgrid:6x5:0.03:0.25:4:border1:plain",
+        "gridboard:3x4:0.05:0.0125:DICT_4X4_50:30:border2",
         "acircles:4x11:20:8",
+        "circles:10x10:20:10:20@r10c1",
+        "circles:14x10:10:3:3/1@r3c3,r8c3,r8c12:gap@r5c7",
         "puzzle:11x8:60",
         "dotted:9x6:25:2,1",
     ];
-    for text in KINDS.iter().map(|(_, _, example)| *example).chain(more) {
+    for text in examples().map(|(_, example)| example).chain(more) {
         let board: Board = text.parse().unwrap();
         assert_eq!(board.to_string().parse(), Ok(board), "{text}: {board}");
     }
@@ -106,6 +109,35 @@ fn an_aprilgrid_is_numbered_as_kalibr_does() {
     assert_eq!(layout.shapes.len() - plain.shapes.len(), 49);
 }
 
+/// Object points of `cv::aruco::GridBoard((3, 2), 4, 1, dictionary, ids 10 to 15)` of OpenCV 4.6 and 5.0, with y downwards.
+#[test]
+fn a_gridboard_is_numbered_as_opencv_does() {
+    let layout = "gridboard:3x2:4:1:DICT_4X4_50:10".parse::<Board>().unwrap().layout().unwrap();
+    assert_eq!((layout.points.len(), layout.markers.len()), (24, 6));
+    let theirs = |id: u32| -> [[f64; 2]; 4] {
+        let [x, y] = [5.0 * f64::from((id - 10) % 3), 5.0 * f64::from((id - 10) / 3)];
+        [[x, y], [x + 4.0, y], [x + 4.0, y + 4.0], [x, y + 4.0]]
+    };
+    for (marker, id) in layout.markers.iter().zip(10..) {
+        assert_eq!((marker.id, marker.corners), (id, theirs(id).map(|[x, y]| [x, -y])));
+        for (k, at) in marker.corners.iter().enumerate() {
+            let point = &layout.points[4 * (id as usize - 10) + k];
+            assert_eq!((point.id.as_str(), point.at), (format!("t{id}c{k}").as_str(), *at));
+            // The marker lies from its corner towards its own u and its own v, which points down.
+            let [u, v] = point.target(0, point.at).axes;
+            let inside = [0, 1].map(|i| at[i] + u[i] + v[i]);
+            assert!(
+                marker.corners.iter().all(|corner| (corner[0] - inside[0]).abs() < 4.0 && (corner[1] - inside[1]).abs() < 4.0),
+                "{id} {k}"
+            );
+        }
+    }
+    // A wider frame leaves more room, up to the gap.
+    let wide = "gridboard:3x2:4:1:DICT_4X4_50:border2".parse::<Board>().unwrap();
+    assert_eq!(wide.dictionary().map(|(dictionary, border)| (dictionary.name, border)), Some(("DICT_4X4_50", 2)));
+    assert_eq!((layout.points[0].room, wide.layout().unwrap().points[0].room), (4.0 / 6.0, 1.0));
+}
+
 #[test]
 fn asymmetric_circles_stand_as_opencv_has_them() {
     let layout = "acircles:4x11:20".parse::<Board>().unwrap().layout().unwrap();
@@ -113,6 +145,38 @@ fn asymmetric_circles_stand_as_opencv_has_them() {
     // ((2 j + i % 2) s, i s) of row i and column j.
     assert_eq!((layout.points[4].id.as_str(), layout.points[4].at), ("r2c1", [20.0, -20.0]));
     assert_eq!(layout.points[43].at, [120.0, -200.0]);
+}
+
+#[test]
+fn circles_unlike_the_others_are_drawn_where_they_are_said_to_be() {
+    let layout = "circles:10x10:20:10:20@r10c1:12/6@r1c1:gap@r4c4".parse::<Board>().unwrap().layout().unwrap();
+    assert_eq!(layout.points.len(), 99);
+    assert!(layout.points.iter().all(|point| point.id != "r4c4"), "nothing is measured where no circle is");
+    let size = |id: &str| layout.points.iter().find(|point| point.id == id).map(|point| (point.size, point.at, point.room));
+    assert_eq!(size("r10c1"), Some((20.0, [0.0, -180.0], 15.0)));
+    assert_eq!(size("r9c1"), Some((10.0, [0.0, -160.0], 10.0)), "half of a spacing up to the larger one");
+    assert_eq!(size("r5c5"), Some((10.0, [80.0, -80.0], 15.0)));
+    assert_eq!(layout.printed, [[-10.0, -190.0], [185.0, 6.0]]);
+    assert_eq!(layout.shapes.iter().filter(|shape| !shape.dark).count(), 1);
+}
+
+/// Marks number a grid where no turn of it leaves them as they are.
+#[test]
+fn what_marks_tell() {
+    for (text, tell) in [
+        ("circles:10x10:20", false),
+        ("circles:10x10:20:10:20@r10c1", true),
+        ("circles:9x9:20:10:20@r5c5", false),
+        ("circles:9x9:20:10:20@r1c1,r9c9", false),
+        ("circles:9x7:20:10:20@r1c1,r7c1", true),
+        ("circles:9x9:20:10:20@r3c3,r3c7,r7c3,r7c7", false),
+        ("circles:9x9:20:10:15@r3c3,r3c7,r7c3:20@r7c7", true),
+        ("circles:9x9:20:10:gap@r1c9", true),
+        ("acircles:4x10:20:10:gap@r5c2", true),
+        ("acircles:4x10:20:10:14@r5c2,r6c3", false),
+    ] {
+        assert_eq!(text.parse::<Board>().unwrap().is_coded(), tell, "{text}");
+    }
 }
 
 #[test]
@@ -140,8 +204,25 @@ fn texts_that_describe_no_board_are_told_what_was_expected() {
         ("aprilgrid:6x6:0.088", "no spacing"),
         ("aprilgrid:6x6:0.088:NaN", "`spacing` is NaN"),
         ("aprilgrid:60x60:0.088:0.3", "needs 3600 markers"),
+        ("gridboard:5x7", "no side of a marker; expected gridboard:COLUMNSxROWS:MARKER:SEPARATION:DICTIONARY[:FIRST][:border2]"),
+        ("gridboard:5x7:40:10", "no dictionary"),
+        ("gridboard:5x7:40:10:DICT_6X6", "`DICT_6X6` is no dictionary"),
+        ("gridboard:5x7:40:0:DICT_6X6_250", "`separation` is 0: expected 0.8 to 400"),
+        ("gridboard:5x7:-40:10:DICT_6X6_250", "`marker` is -40"),
+        ("gridboard:0x7:40:10:DICT_6X6_250", "`columns` is 0"),
+        ("gridboard:5x7:40:10:DICT_4X4_50:20", "`first` is 20: expected at most 50: the board needs 35 markers"),
+        ("gridboard:5x7:40:10:DICT_4X4_50:border3", "`border3` is one too many"),
         ("circles:7x5:wide", "`wide` is no spacing"),
         ("circles:7x5:20:30", "`diameter` is 30"),
+        ("circles:7x5:20:10:20", "`20` is no mark FORM@POINT"),
+        ("circles:7x5:20:10:wide@r1c1", "`wide` is no diameter"),
+        ("circles:7x5:20:10:20@r0c1", "`r0c1` is no point"),
+        ("circles:7x5:20:10:20@r6c1", "`20@r6c1` is beyond 7 columns and 5 rows"),
+        ("circles:7x5:20:10:30@r1c1", "`30@r1c1` has a diameter of 30: expected 1 to 28"),
+        ("circles:7x5:20:10:11@r1c1", "`11@r1c1` is like the others"),
+        ("circles:7x5:20:10:20@r1c1,r1c1", "is there twice"),
+        ("circles:7x5:20:10:gap@r1c1", "turn the board"),
+        ("circles:9x5:20:10:20@r1c1,r1c2,r1c3,r1c4,r1c5,r1c6,r1c7,r1c8,r1c9", "9 circles are unlike the others"),
         ("rings:13:2x2:50:8", "`bits` is 13"),
         ("rings:12:30x30:50:8", "rings of 12 sectors have no more"),
         ("puzzle:11x8", "no side of a square; expected puzzle:COLUMNSxROWS:SQUARE[:X,Y]"),

@@ -3,19 +3,28 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Dotted, Puzzle, Rings};
+use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Dotted, GridBoard, Marks, Puzzle, Rings};
 
 /// The kinds of board, how each is written, and an example.
-pub const KINDS: [(&str, &str, &str); 8] = [
+pub const KINDS: [(&str, &str, &str); 9] = [
     ("chessboard", "COLUMNSxROWS:SQUARE", "chessboard:9x6:25"),
     ("charuco", "COLUMNSxROWS:SQUARE:MARKER:DICTIONARY[:FIRST][:legacy]", "charuco:8x5:30:21:DICT_4X4_50"),
     ("aprilgrid", "COLUMNSxROWS:TAG:SPACING[:FIRST][:border1][:plain]", "aprilgrid:6x6:0.088:0.3"),
-    ("circles", "COLUMNSxROWS:SPACING[:DIAMETER]", "circles:7x5:20"),
-    ("acircles", "COLUMNSxROWS:SPACING[:DIAMETER]", "acircles:4x11:20"),
+    ("gridboard", "COLUMNSxROWS:MARKER:SEPARATION:DICTIONARY[:FIRST][:border2]", "gridboard:5x7:40:10:DICT_6X6_250"),
+    ("circles", "COLUMNSxROWS:SPACING[:DIAMETER][:FORM@POINT,...]", "circles:7x5:20"),
+    ("acircles", "COLUMNSxROWS:SPACING[:DIAMETER][:FORM@POINT,...]", "acircles:4x11:20"),
     ("rings", "BITS:COLUMNSxROWS:SPACING:DIAMETER", "rings:12:6x5:50:8"),
     ("puzzle", "COLUMNSxROWS:SQUARE[:X,Y]", "puzzle:23x16:30:50,100"),
     ("dotted", "COLUMNSxROWS:SQUARE[:X,Y]", "dotted:13x9:25:2,1"),
 ];
+
+/// Examples of kinds whose forms differ in what finds them.
+const MORE: [(&str, &str); 2] = [("circles", "circles:9x7:20:9:16@r7c1"), ("acircles", "acircles:5x9:20:14:14/7@r3c2,r7c2,r7c4")];
+
+/// Every kind of board with an example, of some kinds two.
+pub fn examples() -> impl Iterator<Item = (&'static str, &'static str)> {
+    KINDS.into_iter().map(|(kind, _, example)| (kind, example)).chain(MORE)
+}
 
 impl FromStr for Board {
     type Err = BoardError;
@@ -31,6 +40,7 @@ impl FromStr for Board {
             "chessboard" => parts.chessboard(),
             "charuco" => parts.charuco(),
             "aprilgrid" => parts.aprilgrid(),
+            "gridboard" => parts.gridboard(),
             "rings" => parts.rings(),
             "puzzle" => parts.puzzle(),
             "dotted" => parts.dotted(),
@@ -63,7 +73,14 @@ impl fmt::Display for Board {
                 optional(f, *border == 1, "border1")?;
                 optional(f, squares.is_none(), "plain")
             }
-            Self::Circles(Circles { columns, rows, spacing, diameter, .. }) => write!(f, "{columns}x{rows}:{spacing}:{diameter}"),
+            Self::GridBoard(GridBoard { columns, rows, marker, separation, dictionary, first, border }) => {
+                write!(f, "{columns}x{rows}:{marker}:{separation}:{}", dictionary.name)?;
+                optional(f, *first != 0, first)?;
+                optional(f, *border == 2, "border2")
+            }
+            Self::Circles(Circles { columns, rows, spacing, diameter, marks, .. }) => {
+                write!(f, "{columns}x{rows}:{spacing}:{diameter}{marks}")
+            }
             Self::Rings(Rings { bits, columns, rows, spacing, diameter, .. }) => {
                 write!(f, "{bits}:{columns}x{rows}:{spacing}:{diameter}")
             }
@@ -128,11 +145,23 @@ impl<'a> Parts<'a> {
     fn charuco(&mut self) -> Result<Board, String> {
         let (columns, rows) = self.counts()?;
         let (square, marker) = (self.number("side of a square")?, self.number("side of a marker")?);
-        let name = self.take("dictionary")?;
-        let dictionary = Dictionary::named(name)
-            .ok_or_else(|| format!("`{name}` is no dictionary ({})", Dictionary::names().collect::<Vec<_>>().join(", ")))?;
+        let dictionary = self.dictionary()?;
         let (first, legacy) = (self.optional().unwrap_or(0), self.flag("legacy"));
         Ok(Board::Charuco(Charuco { columns, rows, square, marker, dictionary, first, legacy }))
+    }
+
+    fn dictionary(&mut self) -> Result<&'static Dictionary, String> {
+        let name = self.take("dictionary")?;
+        Dictionary::named(name).ok_or_else(|| format!("`{name}` is no dictionary ({})", Dictionary::names().collect::<Vec<_>>().join(", ")))
+    }
+
+    fn gridboard(&mut self) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        let (marker, separation) = (self.number("side of a marker")?, self.number("separation")?);
+        let dictionary = self.dictionary()?;
+        let first = self.optional().unwrap_or(0);
+        let border = if self.flag("border2") { 2 } else { 1 };
+        Ok(Board::GridBoard(GridBoard { columns, rows, marker, separation, dictionary, first, border }))
     }
 
     fn aprilgrid(&mut self) -> Result<Board, String> {
@@ -149,7 +178,9 @@ impl<'a> Parts<'a> {
         let (columns, rows) = self.counts()?;
         let spacing: f64 = self.number("spacing")?;
         let diameter = self.optional().unwrap_or(0.5 * spacing);
-        Ok(Board::Circles(Circles { columns, rows, spacing, diameter, hole: None, asymmetric }))
+        let marks = Marks::read(&self.all[self.next..])?;
+        self.next = self.all.len();
+        Ok(Board::Circles(Circles { columns, rows, spacing, diameter, hole: None, asymmetric, marks }))
     }
 
     fn rings(&mut self) -> Result<Board, String> {

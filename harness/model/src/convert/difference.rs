@@ -1,7 +1,7 @@
 //! How far two cameras differ.
 
 use super::fit::{Problem, State};
-use super::grid::{Node, Region, Sight, Spread, Vector, axis, nodes_in, normalise, spread};
+use super::grid::{Node, Region, Sight, Spread, Vector, axis, cell_share, nodes_in, normalise, spread};
 use super::rotation::between;
 use super::{COLUMNS, ConvertError, Rotation};
 use crate::PixelPoint;
@@ -103,6 +103,31 @@ pub fn difference_at(
 ) -> Result<Difference, ConvertError> {
     let held = rotation_at(first, second, places)?;
     compared(first, second, &DifferenceOptions { compensation: false, ..*options }, Some(held))
+}
+
+/// How far rays are from those of `camera`: where it pictures each after the best rotation, less the place that it came with; `None` for one that it does not
+/// picture. Of a camera of which nothing but rays is known, or one of a model that there is not here.
+///
+/// Places are weighted by their share of the area, as those of a grid from the first pixel to the last ([`cell_share`]). The rotation is the least-squares one over
+/// the places that `camera` pictures from the start.
+///
+/// # Errors
+/// Fewer than a handful of rays that `camera` pictures, a rotation that is not found.
+pub fn difference_of_rays(rays: &[(PixelPoint, Ray)], camera: &Camera) -> Result<(Vec<Option<Vector>>, Rotation), ConvertError> {
+    let sight = |&(point, ray): &(PixelPoint, Ray)| Sight { node: Node { point, weight: cell_share(camera.size(), point) }, ray };
+    let mut sights: Vec<Sight> = rays.iter().map(sight).collect();
+    let start = between(&sights, camera);
+    sights.retain(|sight| camera.project(start.apply(sight.ray)).is_ok());
+    if sights.len() < 5 {
+        return Err(ConvertError::NotPictured { share: 1.0 });
+    }
+    normalise(&mut sights);
+    let rotation = Problem { sights: &sights, free: &[], rotation: true }.solve(State { camera: *camera, rotation: start })?.rotation;
+    let vector = |&(at, ray): &(PixelPoint, Ray)| {
+        let found = camera.project(rotation.apply(ray)).ok().filter(|found| found.is_finite())?;
+        Some(Vector { at, dx: found.x - at.x, dy: found.y - at.y })
+    };
+    Ok((rays.iter().map(vector).collect(), rotation))
 }
 
 fn rotation_at(first: &Camera, second: &Camera, places: &[PixelPoint]) -> Result<Rotation, ConvertError> {

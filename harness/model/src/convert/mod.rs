@@ -26,7 +26,7 @@ use crate::camera::{Camera, CameraModel, NoCounterpart};
 use fit::{Problem, State};
 use grid::{Sight, sights, spread};
 
-pub use difference::{Compensated, Difference, DifferenceOptions, difference, difference_at};
+pub use difference::{Compensated, Difference, DifferenceOptions, difference, difference_at, difference_of_rays};
 pub use grid::{Region, Spread, Vector, cell_share};
 pub use mistake::{Mistake, mistaken};
 pub use naive::{Tangential, from_naive, naive};

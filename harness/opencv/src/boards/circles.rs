@@ -24,7 +24,11 @@ fn circles(image: &Image, size: Size, flag: i32) -> opencv::Result<Option<Vector
 
 impl BoardFinder for CirclesGrid {
     fn unfit(&self, board: &Board) -> Option<String> {
-        (!matches!(board, Board::Circles(_))).then(|| "it finds grids of circles alone".into())
+        match board {
+            Board::Circles(circles) if circles.marks.is_empty() => None,
+            Board::Circles(_) => Some("it does not read which circles are unlike the others".into()),
+            _ => Some("it finds grids of circles alone".into()),
+        }
     }
 
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {

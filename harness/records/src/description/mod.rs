@@ -11,7 +11,7 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
-pub use study::{Adjustment, Blocks, Study};
+pub use study::{Adjustment, Blocks, Study, Systems};
 pub use sweep::{Axis, Cell, Sweep, Value};
 pub use views::{Role, Room, Station, Target, Views};
 
@@ -182,7 +182,7 @@ mod tests {
         let mut both = file(Study::Network(views(None), TOLD));
         both["subject"]["views"]["blocks"] = blocks["blocks"].clone();
         let error = serde_json::from_value::<Description>(both).unwrap_err().to_string();
-        assert!(error.contains("`blocks` beside `adjustment`"), "{error}");
+        assert!(error.contains("expected one of them"), "{error}");
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub enum Study {
     Network(Box<Views>, Adjustment),
     /// Free networks are made of them.
     Blocks(Box<Views>, Blocks),
+    /// Whole calibration systems are told them.
+    Calibrators(Box<Views>, Systems),
     /// Nothing is measured: calibrations that are made elsewhere are applied here.
     Transfer(Box<Views>),
     /// Photographs, of which no truth is known.
@@ -32,7 +34,9 @@ impl Study {
     /// The views of a testfield, if it is of such.
     pub fn views(&self) -> Option<&Views> {
         match self {
-            Self::Views(views) | Self::Network(views, _) | Self::Blocks(views, _) | Self::Transfer(views) => Some(views),
+            Self::Views(views) | Self::Network(views, _) | Self::Blocks(views, _) | Self::Calibrators(views, _) | Self::Transfer(views) => {
+                Some(views)
+            }
             Self::Scene | Self::Photographs { .. } | Self::Printed(_) => None,
         }
     }
@@ -60,6 +64,16 @@ pub struct Blocks {
     pub compared: Vec<String>,
 }
 
+/// What whole calibration systems are told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Systems {
+    /// The camera model asked for.
+    pub model: String,
+    /// The standard deviation of an image coordinate that they are told, px; `None` where they are not.
+    pub sigma_px: Option<f64>,
+}
+
 /// A [`Study`] as files have it: by what is measured.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -83,6 +97,8 @@ struct WrittenViews {
     adjustment: Option<Adjustment>,
     blocks: Option<Blocks>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    calibrators: Option<Systems>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     room: Option<Room>,
 }
 
@@ -96,30 +112,32 @@ impl TryFrom<Subject> for Study {
             Subject::Printed(printed) => return Ok(Self::Printed(printed)),
             Subject::Views(written) => *written,
         };
-        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, room } = written;
+        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, room } = written;
         let views = Box::new(Views { size, unit, extent, normal, stations, targets, room });
-        match (adjustment, blocks) {
-            (Some(_), Some(_)) => Err("`blocks` beside `adjustment`: expected one of them"),
-            (Some(told), None) => Ok(Self::Network(views, told)),
-            (None, Some(told)) => Ok(Self::Blocks(views, told)),
+        match (adjustment, blocks, calibrators) {
+            (Some(told), None, None) => Ok(Self::Network(views, told)),
+            (None, Some(told), None) => Ok(Self::Blocks(views, told)),
+            (None, None, Some(told)) => Ok(Self::Calibrators(views, told)),
             // Where nothing is adjusted only calibrations that come from elsewhere have control and check points.
-            (None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
-            (None, None) => Ok(Self::Views(views)),
+            (None, None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
+            (None, None, None) => Ok(Self::Views(views)),
+            _ => Err("`adjustment`, `blocks` and `calibrators`: expected one of them"),
         }
     }
 }
 
 impl From<Study> for Subject {
     fn from(study: Study) -> Self {
-        let (views, adjustment, blocks) = match study {
+        let (views, adjustment, blocks, calibrators) = match study {
             Study::Scene => return Self::Scene,
             Study::Photographs { judged } => return Self::Photographs { judged },
             Study::Printed(printed) => return Self::Printed(printed),
-            Study::Views(views) | Study::Transfer(views) => (views, None, None),
-            Study::Network(views, told) => (views, Some(told), None),
-            Study::Blocks(views, told) => (views, None, Some(told)),
+            Study::Views(views) | Study::Transfer(views) => (views, None, None, None),
+            Study::Network(views, told) => (views, Some(told), None, None),
+            Study::Blocks(views, told) => (views, None, Some(told), None),
+            Study::Calibrators(views, told) => (views, None, None, Some(told)),
         };
         let Views { size, unit, extent, normal, stations, targets, room } = *views;
-        Self::Views(Box::new(WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, room }))
+        Self::Views(Box::new(WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, room }))
     }
 }

@@ -71,6 +71,18 @@ catalogue! {
     Missed: Network "missed" in Number, 1, Less, CAMERA, "photographs of the calibration in which the board was not found";
     Runs: Network "runs" in Number, 0, Neither, CAMERA, "how often check points were intersected for the split of their errors";
     OverFrame: Frame "rms" in One("px"), 2, Less, CAMERA, "distance from the true camera over the frame, root mean square after the best rotation; its sigma is what the covariance predicts";
+    // Whole calibration systems.
+    OverCovered: Frame "covered" in One("px"), 2, Less, CAMERA, "the same over the part of the frame where something was measured";
+    LengthError: Frame "length" in One("mm"), 3, Less, CAMERA, "error of a length of 100 mm across the line of sight, root mean square over the frame";
+    SquareOverStated: Network "z2" in Number, 2, One, CAMERA, "mean square of errors over the frame in stated standard deviations";
+    SquareOverStatedParameters: Network "z2 of parameters" in Number, 2, One, CAMERA, "mean square of errors of parameters in stated standard deviations";
+    IsCalibrated: Network "calibrated" in Number, 2, Neither, CAMERA, "whether the system gave a camera and said nothing against it";
+    IsDoubtful: Network "doubtful" in Number, 2, Neither, CAMERA, "whether it gave a camera and doubted it";
+    IsRefused: Network "refused" in Number, 2, Neither, CAMERA, "whether it said that there is none to be had";
+    IsFailed: Network "failed" in Number, 2, Less, CAMERA, "whether it failed";
+    IsWrongAndSilent: Network "wrong and silent" in Number, 2, Less, CAMERA, "whether it gave a camera, said nothing against it, and was farther off than five stated standard deviations and a pixel";
+    StatedRms: Network "stated rms" in One("px"), 3, Neither, CAMERA, "root mean square of residuals as the system reports it";
+    PointsLeftOut: Network "points left out" in Number, 1, Neither, CAMERA, "image points that the system left out";
     // Check points.
     RmseX: Check "rmse_x" in Object, 4, Less, CAMERA, "root mean square error of check points in X";
     RmseY: Check "rmse_y" in Object, 4, Less, CAMERA, "root mean square error of check points in Y";
@@ -136,6 +148,10 @@ catalogue! {
     WrongKindsOfAll: Network "{}/{how} wrong, {size}" in Number, 0, Less, SEEN, "the same over all images";
     KindsOfAll: Network "{}/{how} of {size}" in Number, 0, Neither, SEEN, "targets of a size group over all images";
     TakenFor: Network "{}/{how}, {kind} taken for {kind}/{}" in Number, 0, Less, SEEN, "targets of a kind taken for another one";
+    Lines: Network "{}/lines/{}" in Number, 0, More, SEEN, "lines of the grid that were found where their true places are known";
+    LineError: Network "{}/line error/{}" in One("px"), 3, Less, SEEN, "root mean square distance of lines from the true places of the nodes on them, across";
+    LineErrorMost: Network "{}/line error, most/{}" in One("px"), 3, Less, SEEN, "the same of the one line of which it is largest";
+    LineErrorMostOfAll: Network "{}/line error, most" in One("px"), 3, Less, SEEN, "the same over all images";
     // Finders of boards.
     BoardGrids: Network "board/grids/all" in Number, 0, More, FOUND, "images in which the board was found";
     BoardImages: Network "board/images/all" in Number, 0, Neither, FOUND, "images that were searched";

@@ -108,6 +108,8 @@ pub enum Better {
     Less,
     /// The larger.
     More,
+    /// The nearer to one.
+    One,
     /// Neither: it says what there is, not how good it is.
     Neither,
 }
@@ -118,6 +120,7 @@ impl Better {
         match self {
             Self::Less => "less",
             Self::More => "more",
+            Self::One => "1",
             Self::Neither => "",
         }
     }

@@ -228,7 +228,7 @@ fn observed(calibration: &Calibration<'_>) -> Option<String> {
 
 fn parameters(calibration: &Calibration<'_>, camera: usize) -> MarkdownTable {
     let (names, covariance) = calibration.covariances.of_camera(camera);
-    let tests = calibration.solution.significance().unwrap_or_default();
+    let tests = calibration.significance();
     let resampled = calibration.resampled.as_ref().and_then(|resampled| resampled.as_ref().ok());
     let mut table = MarkdownTable::new(&["parameter", "value", "sigma", "by images", "unit", "t", "p"]);
     for parameter in calibration.camera(camera).parameters() {

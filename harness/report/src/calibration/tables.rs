@@ -111,7 +111,7 @@ fn adjusted(residual: &Residual, checked: Option<&PointReliability>, rejected: O
 
 /// All parameters; those that were not solved for have no standard deviation.
 fn parameters(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
-    let tests = calibration.solution.significance().unwrap_or_default();
+    let tests = calibration.significance();
     let of_camera = |camera: usize| {
         let rows = of_camera(calibration, &tests, camera);
         let name = calibration.name_of(camera);

@@ -1,7 +1,7 @@
 //! What a user must know of a calibration.
 
 use calibench_adjust::{Significance, Use};
-use calibench_calibrate::Calibration;
+use calibench_calibrate::{Calibration, GrossErrors, Risk};
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
 use super::{board, checks, discs, scale};
@@ -18,7 +18,7 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         .iter()
         .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
         .collect();
-    let tests = calibration.solution.significance().unwrap_or_default();
+    let tests = calibration.significance();
     let observed = |test: &Significance| {
         calibration.prepared.settings.cameras[test.camera].priors.iter().any(|prior| prior.parameter == test.parameter)
     };
@@ -40,7 +40,7 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     warnings.extend(weights(calibration));
     let rejected = calibration.found.iter().filter(|found| found.left_out).count();
     if rejected > 0 {
-        warnings.push(format!("{rejected} image points were rejected and left out"));
+        warnings.push(format!("{rejected} image points were rejected and left out{}", worst(calibration)));
     }
     let kept = calibration.found.len() - rejected;
     if kept > 0 {
@@ -59,6 +59,22 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
     }
     warnings
+}
+
+/// The image point that was left out and is off most.
+fn worst(calibration: &Calibration<'_>) -> String {
+    let prepared = calibration.prepared;
+    let left_out = calibration.solution.each_residual().filter(|residual| residual.used == Use::LeftOut);
+    let lengths = left_out.filter_map(|residual| Some((residual.v.map(|[x, y]| x.hypot(y))?, prepared.sights[residual.observation])));
+    let Some((length, sight)) = lengths.max_by(|a, b| a.0.total_cmp(&b.0)) else { return String::new() };
+    let sight = prepared.survey.sight(sight as usize);
+    let kept = if prepared.settings.gross == GrossErrors::Rejected(Risk::WholeSet) { " (--plain keeps all)" } else { "" };
+    format!(
+        ": the worst, {} in {}, is {} px off{kept}",
+        prepared.survey.target(sight.target),
+        prepared.survey.images[sight.image],
+        plain(length)
+    )
 }
 
 /// Coefficients that are held because nothing else does.

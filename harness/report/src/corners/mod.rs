@@ -81,9 +81,12 @@ pub(crate) fn stretched(lengths: impl Iterator<Item = f64>, size: ImageSize, wid
     stretch(share * f64::from(size.width), most.max(1e-12))
 }
 
+/// The longest that a residual is drawn, as a share of the width of its frame.
+const LONGEST: f64 = 0.15;
+
 /// A residual as it is drawn, so many times too long, px. A blunder that is left out may be as long as the frame: its direction is enough.
 pub(crate) fn shown([x, y]: [f64; 2], size: ImageSize, times: f64) -> [f64; 2] {
-    let limit = 0.15 * f64::from(size.width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
+    let limit = LONGEST * f64::from(size.width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
     let times = times * limit.min(1.0);
     [x * times, y * times]
 }
@@ -121,10 +124,12 @@ pub(crate) fn vectors<'c, 'a: 'c>(
     }
     let doubted = all.iter().filter(|corner| corner.used != Use::Full).count();
     let doubted = if doubted > 0 { format!("; orange: {doubted} left out or of less weight") } else { String::new() };
+    let cut = all.iter().filter(|corner| corner.length().is_some_and(|length| times * length > LONGEST * f64::from(size.width))).count();
+    let cut = if cut > 0 { format!("; {cut} are longer than is drawn") } else { String::new() };
     let some =
         if every > 1 { format!("; of {count} the longest {} are drawn and one in {every} of the others", most / 2) } else { String::new() };
     let longest = plain(in_use().fold(0.0, f64::max));
-    Vectors { plot, remark: format!("arrows {times} times their length; the longest {longest} px{doubted}{some}") }
+    Vectors { plot, remark: format!("arrows {times} times their length; the longest {longest} px{doubted}{cut}{some}") }
 }
 
 /// The residuals of images of one size in one frame: the figure of the page and its picture, with what stands before its name and before its caption.
@@ -188,5 +193,15 @@ mod tests {
                 && html.contains("longest 0.500 px"),
             "{html}"
         );
+        assert!(!html.contains("longer than is drawn"), "{html}");
+    }
+
+    /// Arrows that are cut short are no measure, which is said.
+    #[test]
+    fn arrows_that_are_cut_short_are_counted() {
+        let mut all = vec![corner(0, "a", Some([0.3, 0.4])); 40];
+        all.push(Corner { used: Use::LeftOut, ..corner(0, "b", Some([30.0, 0.0])) });
+        let html = over_frame("", "", ImageSize { width: 100, height: 50 }, all.iter()).html();
+        assert!(html.contains("longest 0.500 px; orange: 1 left out or of less weight; 1 are longer than is drawn"), "{html}");
     }
 }

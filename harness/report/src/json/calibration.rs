@@ -240,7 +240,7 @@ impl CalibrationAnswer {
         let doubts: Vec<String> = before.iter().cloned().chain(found.iter().map(ToString::to_string)).collect();
         let name = |index: usize| calibration.parameter_name(&calibration.covariances.parameters[index]);
         let pairs = calibration.covariances.correlated(CORRELATED);
-        let tests = solution.significance().unwrap_or_default();
+        let tests = calibration.significance();
         Ok(Self {
             doubts,
             doubted: found.iter().map(|doubt| Doubted::new(calibration, doubt)).collect(),

@@ -8,7 +8,7 @@ use crate::plain;
 use crate::plot::{Axis, Figure, Plot, Said, Shape, around};
 
 /// Operators up to which a cell has room for its interval.
-const INTERVALS: usize = 7;
+const INTERVALS: usize = 11;
 /// Photographs up to which each has its name below.
 const NAMES: usize = 30;
 
@@ -84,7 +84,7 @@ pub(super) fn holdout(summary: &Summary, trusted: &Trusted<'_>) -> Figure {
                 plot.note((x, y), &plain(found.value), true);
             } else {
                 plot.note((x, y + 0.18), &plain(found.value), true);
-                plot.note((x, y - 0.2), &format!("{} to {}", plain(found.interval.0), plain(found.interval.1)), true);
+                plot.note((x, y - 0.2), &format!("{}\u{2013}{}", plain(found.interval.0), plain(found.interval.1)), true);
             }
         }
     }

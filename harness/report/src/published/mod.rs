@@ -1,6 +1,7 @@
 //! What papers printed, and which of our figures stands behind each cell.
 
 pub(crate) mod adjustment;
+mod asked;
 mod count;
 mod ensemble;
 mod error;
@@ -23,14 +24,14 @@ mod verdict;
 pub use count::{Counts, Figures};
 pub use ensemble::{Ensemble, EnsembleError};
 pub use error::PublishedError;
-pub(crate) use figure::of_points;
+pub(crate) use figure::{errors as errors_of, of_points};
 pub use kind::Kind;
 pub use metric::Metric;
 pub(crate) use range::Range;
 pub(crate) use read::PREDICTIONS;
 pub use read::{papers, tables};
 pub use schema::schema;
-pub(crate) use section::{section, verdicts, without_records};
+pub(crate) use section::{findings, section, verdicts, without_records};
 pub(crate) use sweep::{section as swept, verdicts as swept_verdicts};
 pub(crate) use trials::{Trials, ratio};
 pub use verdict::{Printed, Tally, Verdict};
@@ -176,6 +177,9 @@ pub struct Cell {
     /// *consistent* or *inconsistent*.
     #[serde(default)]
     pub consistent_within: Option<f64>,
+    /// The bound that is printed, in its unit, where the print is one, as in "0.1 or better": it reproduces where runs of ours keep it, too. `printed` may then be any text.
+    #[serde(default)]
+    pub at_most: Option<f64>,
     /// Why the two cannot be compared, if so.
     #[serde(default)]
     pub not_comparable: Option<String>,
@@ -278,6 +282,7 @@ impl Cell {
             predicted: None,
             units: None,
             consistent_within: None,
+            at_most: None,
             not_comparable: None,
         }
     }

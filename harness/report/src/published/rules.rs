@@ -5,6 +5,7 @@ use std::path::Path;
 
 use calibench_diagnostics::{Problem, Problems};
 
+use super::asked::not_asked;
 use super::{Cell, Kind, Metric, Place, Printed, PublishedError, Table, adjustment};
 
 /// The first mistake of `table`, which was read from `text`.
@@ -22,8 +23,8 @@ pub fn check(table: &Table, text: &str) -> Result<(), Problem> {
                 format!("row `{}` has a cell in column `{}`, which is none of {}", cell.row, cell.column, table.columns.join(", "));
             return Err(at("column", message).nearest(&cell.column, table.columns.iter().map(String::as_str)));
         }
-        if Printed::parse(&cell.printed).is_none() && cell.not_comparable.is_none() {
-            let message = format!("`{}` is no number: expected digits as in 22.520 or 1/18.9, or `not_comparable`", cell.printed);
+        if Printed::parse(&cell.printed).is_none() && cell.not_comparable.is_none() && cell.at_most.is_none() {
+            let message = format!("`{}` is no number: expected digits as in 22.520 or 1/18.9, `at_most` or `not_comparable`", cell.printed);
             return Err(at("printed", message));
         }
         if let Some(message) = adjustment::unknown(cell) {
@@ -35,6 +36,14 @@ pub fn check(table: &Table, text: &str) -> Result<(), Problem> {
         if let Some(message) = of_kind(cell) {
             return Err(at("kind", format!("row `{}`, column `{}`: {message}", cell.row, cell.column)));
         }
+    }
+    for finding in &table.findings {
+        let Some(at) = not_asked(finding) else { continue };
+        let start = text.find(&finding[at..]).unwrap_or(0);
+        return Err(Problem::new(
+            start..start + 1,
+            "`{` in a finding: expected a figure that is asked for, as in `{ours table-1 | row | column}`",
+        ));
     }
     let touches = |figure: &str| table.cells.iter().any(|cell| cell.of.as_deref().is_some_and(|of| of.starts_with(figure)));
     let figures = table.causes.iter().flat_map(|fitted| &fitted.figures);

@@ -9,12 +9,21 @@ use crate::load::{LoadError, Loaded};
 
 /// A section of a page, and the verdicts of its cells.
 pub struct Section {
-    /// Markdown.
+    /// Markdown: the table beside ours.
     pub text: String,
+    /// What stands behind what was found out.
+    pub after: String,
     /// The verdict of each cell; none where nothing could be compared.
     pub verdicts: Vec<Verdict>,
     /// Our figure for each cell, or none.
     pub figures: Vec<Option<f64>>,
+}
+
+impl Section {
+    /// Where nothing could be compared.
+    pub fn of_nothing(text: String) -> Self {
+        Self { text, after: String::new(), verdicts: Vec::new(), figures: Vec::new() }
+    }
 }
 
 /// The section of `table`, whose scenario's records are `main`; other scenarios stand `beside` it.
@@ -27,13 +36,10 @@ pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> Result<Secti
     match compared {
         Ok((comparison, _)) | Err(comparison) => text.push_str(&comparison),
     }
-    text.push_str(&findings(table));
-    if table.is_of_points() {
-        text.push_str(&every_method::section(table, main, beside));
-    }
+    let after = if table.is_of_points() { every_method::section(table, main, beside) } else { String::new() };
     let judged = judged(table, main)?.unwrap_or_default();
     let (verdicts, figures) = judged.into_iter().unzip();
-    Ok(Section { text, verdicts, figures })
+    Ok(Section { text, after, verdicts, figures })
 }
 
 /// Heading, source and unit.
@@ -114,7 +120,7 @@ fn judged(table: &Table, main: &Loaded) -> Result<Option<Judged>, LoadError> {
 
 /// The section of a table of adjustments whose scenario was not run.
 pub fn without_records(table: &Table) -> Section {
-    Section { text: head(table) + &no_adjustments(table) + &findings(table), verdicts: Vec::new(), figures: Vec::new() }
+    Section::of_nothing(head(table) + &no_adjustments(table))
 }
 
 fn no_adjustments(table: &Table) -> String {
@@ -126,7 +132,7 @@ pub fn no_method(table: &Table) -> String {
     format!("The records of `{}` hold no method `{}`: nothing to compare.\n\n", table.scenario, table.method)
 }
 
-/// What was found out about a table.
+/// What was found out about a table, as it is written: figures may be asked for in braces.
 pub fn findings(table: &Table) -> String {
     if table.findings.is_empty() {
         return String::new();

@@ -9,8 +9,8 @@ use super::many::SINGLE;
 use super::notes::Notes;
 use super::one::{gravest, like, words};
 use super::range::Range;
-use super::section::{Section, findings, head, no_method};
-use super::{Cell, Metric, Table, Tally, Verdict};
+use super::section::{Section, head, no_method};
+use super::{Cell, Metric, Printed, Table, Tally, Verdict};
 use crate::LoadError;
 use crate::markdown::MarkdownTable;
 use crate::sweep::LoadedSweep;
@@ -21,12 +21,13 @@ use crate::sweep::LoadedSweep;
 /// Records that cannot be read.
 pub fn section(table: &Table, loaded: &LoadedSweep) -> Result<Section, LoadError> {
     if method(table, loaded, None).is_none() {
-        return Ok(Section { text: head(table) + &no_method(table) + &findings(table), verdicts: Vec::new(), figures: Vec::new() });
+        return Ok(Section::of_nothing(head(table) + &no_method(table)));
     }
     let runs = runs(table, loaded)?;
     let figures = table.cells.iter().map(|cell| ours(table, loaded, cell)).collect();
     Ok(Section {
-        text: head(table) + &comparison(table, loaded, &runs) + &findings(table),
+        text: head(table) + &comparison(table, loaded, &runs),
+        after: String::new(),
         verdicts: judged(table, loaded, &runs),
         figures,
     })
@@ -86,12 +87,9 @@ fn single(cell: &Cell, runs: &[f64]) -> Option<Range> {
 
 fn comparison(table: &Table, loaded: &LoadedSweep, runs: &[Vec<f64>]) -> String {
     let mut header = vec!["row".to_owned()];
-    header.extend(
-        table
-            .columns
-            .iter()
-            .flat_map(|column| ["printed", "ours", "single runs, 95 %", "missed or lost"].map(|part| format!("{column}: {part}"))),
-    );
+    header.extend(table.columns.iter().flat_map(|column| {
+        ["printed", "ours", "ours / printed", "single runs, 95 %", "missed or lost"].map(|part| format!("{column}: {part}"))
+    }));
     header.extend(["kind", "verdict"].map(str::to_owned));
     let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
     let (mut tally, mut notes) = (Tally::default(), Notes::default());
@@ -100,7 +98,7 @@ fn comparison(table: &Table, loaded: &LoadedSweep, runs: &[Vec<f64>]) -> String 
         for column in &table.columns {
             let is_it = |(cell, _): &(&Cell, &Vec<f64>)| cell.row == label && cell.column == *column;
             let Some((cell, runs)) = table.cells.iter().zip(runs).find(is_it) else {
-                cells.extend([const { String::new() }; 4]);
+                cells.extend([const { String::new() }; 5]);
                 continue;
             };
             let score = score(table, loaded, cell);
@@ -112,6 +110,7 @@ fn comparison(table: &Table, loaded: &LoadedSweep, runs: &[Vec<f64>]) -> String 
             cells.extend([
                 cell.printed.clone(),
                 ours.map_or("none".into(), |ours| like(cell, ours)),
+                ours.zip(Printed::parse(&cell.printed)).map_or(String::new(), |(ours, printed)| times(ours, printed.value)),
                 single(cell, runs).map_or(String::new(), |range| format!("{} to {}", like(cell, range.low), like(cell, range.high))),
                 score.map_or(String::new(), |s| format!("{:.1} %", 100.0 * (s.points() - s.measured) as f64 / s.points() as f64)),
             ]);
@@ -129,6 +128,11 @@ fn comparison(table: &Table, loaded: &LoadedSweep, runs: &[Vec<f64>]) -> String 
         notes.render(),
         tally.sentence()
     )
+}
+
+/// So many times as large as printed.
+fn times(ours: f64, printed: f64) -> String {
+    if printed == 0.0 { String::new() } else { format!("{:.2}", ours / printed) }
 }
 
 /// The figures of the cell of the sweep that `cell` names.
@@ -224,10 +228,13 @@ mod tests {
         assert_eq!(words_of(&table), [yes, yes, yes, yes, no, none, none, none]);
         let text = comparison(&table, &loaded(), &runs_of(&table));
         let kind = "prediction";
-        assert_eq!(row(&text, &["1"]), ["1", "2.0", "2.00", "1.00 to 3.00", "75.0 %", "3.9", "3.87", "2.24 to 5.00", "75.0 %", kind, yes]);
-        assert_eq!(row(&text, &["2"]), ["2", "3.5", "3.50", "2.50 to 4.50", "75.0 %", "", "", "", "", kind, yes]);
-        assert_eq!(row(&text, &["3"]), ["3", "0.5", "0.50", "", "0.0 %", "0.7", "-0.25", "", "50.0 %", kind, no]);
-        assert_eq!(row(&text, &["4"]), ["4", "0.7", "none", "", "", "", "", "", "", kind, "not comparable (a)"]);
+        assert_eq!(
+            row(&text, &["1"]),
+            ["1", "2.0", "2.00", "1.00", "1.00 to 3.00", "75.0 %", "3.9", "3.87", "0.99", "2.24 to 5.00", "75.0 %", kind, yes]
+        );
+        assert_eq!(row(&text, &["2"]), ["2", "3.5", "3.50", "1.00", "2.50 to 4.50", "75.0 %", "", "", "", "", "", kind, yes]);
+        assert_eq!(row(&text, &["3"]), ["3", "0.5", "0.50", "1.00", "", "0.0 %", "0.7", "-0.25", "-0.36", "", "50.0 %", kind, no]);
+        assert_eq!(row(&text, &["4"]), ["4", "0.7", "none", "", "", "", "", "", "", "", "", kind, "not comparable (a)"]);
         assert!(
             text.contains("Of 8 cells, 4 reproduce, 1 differ and 3 are not comparable.") && text.contains(", 2 trials a cell."),
             "{text}"

@@ -139,6 +139,9 @@ impl Cell {
         if let Some(why) = &self.not_comparable {
             return Verdict::NotComparable(why.clone());
         }
+        if let (Some(most), Some(ours)) = (self.at_most, ours) {
+            return bounded(most, ours);
+        }
         match (Printed::parse(&self.printed), ours) {
             (None, _) => Verdict::NotComparable("the printed figure cannot be read".into()),
             (_, None) => Verdict::NotComparable("no record of ours".into()),
@@ -159,6 +162,9 @@ impl Cell {
 
     /// Compares a printed figure of a single run with where many lie: it reproduces from `low` to `high`, in the unit of the printed figure, widened by half a unit of its last digit.
     pub fn verdict_between(&self, low: f64, high: f64) -> Verdict {
+        if let (Some(most), None) = (self.at_most, &self.not_comparable) {
+            return bounded(most, low);
+        }
         match (&self.not_comparable, Printed::parse(&self.printed)) {
             (Some(why), _) => Verdict::NotComparable(why.clone()),
             (None, None) => Verdict::NotComparable("the printed figure cannot be read".into()),
@@ -166,6 +172,11 @@ impl Cell {
             _ => Verdict::Differs,
         }
     }
+}
+
+/// Of a printed bound.
+fn bounded(most: f64, ours: f64) -> Verdict {
+    if ours <= most { Verdict::Reproduces } else { Verdict::Differs }
 }
 
 #[cfg(test)]
@@ -241,6 +252,18 @@ mod tests {
         [1.5, 2.0, 2.0].into_iter().for_each(|ours| tally.count(&predicted(ours)));
         assert_eq!(tally.sentence(), "Of 3 cells, 0 reproduce, 0 differ, 1 are consistent, 2 inconsistent and 0 are not comparable.");
         assert_eq!((Verdict::Consistent.gravity(), Verdict::Inconsistent.gravity()), (0, 2));
+    }
+
+    /// A single run that keeps the printed bound is one of ours, or none of ours keeps it.
+    #[test]
+    fn a_bound_is_kept_by_some_runs() {
+        let bound = || Cell { at_most: Some(0.1), ..cell("0.1 or better", Metric::Figure) };
+        assert_eq!([0.05, 0.1, 0.101].map(|ours| bound().verdict(Some(ours)).word()), ["reproduces", "reproduces", "differs"]);
+        assert_eq!([(0.02, 0.11), (0.11, 0.2)].map(|(low, high)| bound().verdict_between(low, high).word()), ["reproduces", "differs"]);
+        let told = || Cell { not_comparable: Some("another line".into()), ..bound() };
+        let why = Verdict::NotComparable("another line".into());
+        assert_eq!((told().verdict(Some(0.05)), told().verdict_between(0.0, 0.2)), (why.clone(), why));
+        assert!(matches!(bound().verdict(None), Verdict::NotComparable(_)));
     }
 
     #[test]

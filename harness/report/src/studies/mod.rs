@@ -1,6 +1,7 @@
 //! What pages show of each study: a folder for each, with its section in `section.rs`, that of a sweep in `sweep.rs`, and the tables and pictures of both.
 
 mod blocks;
+mod calibrators;
 mod network;
 mod photographs;
 mod points;
@@ -29,6 +30,7 @@ pub fn of(scenario: &Description) -> &'static dyn Section {
         Study::Scene | Study::Views(_) => &points::Points,
         Study::Network(..) => &network::Network,
         Study::Blocks(..) => &blocks::Blocks,
+        Study::Calibrators(..) => &calibrators::Calibrators,
         Study::Transfer(_) => &transfer::Transfer,
         Study::Photographs { .. } => &photographs::Photographs,
         Study::Printed(_) => &printed::Printed,

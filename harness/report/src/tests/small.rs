@@ -170,7 +170,13 @@ impl Family {
 
     fn write(&self) -> Result<PathBuf, String> {
         let at = |name: &str| self.folder.path().join(name);
-        let places = Places { records: at("records"), published: at("published"), cameras: at("cameras"), reports: at("reports") };
+        let places = Places {
+            records: at("records"),
+            published: at("published"),
+            cameras: at("cameras"),
+            league: at("league"),
+            reports: at("reports"),
+        };
         fill(&places, "small", &[NAME.to_owned()]).and_then(crate::Filled::put).map_err(|error| error.to_string())?;
         Ok(at("reports/small/README.md"))
     }

@@ -9,6 +9,7 @@ use crate::canvas::{Canvas, Mark};
 use crate::field::shade;
 use crate::figures::Layer;
 use crate::load::{LoadError, Loaded};
+use crate::markdown::fixed;
 use crate::scene_figures::targets;
 
 /// The image that is shown: the solid right angle.
@@ -80,7 +81,7 @@ fn map(canvas: &mut Canvas, peak: &Peak) {
     });
     for (row, column) in (0..count).flat_map(|row| (0..count).map(move |column| (row, column))) {
         let (x, y) = corner(column, row);
-        canvas.label(&format!("{:.2}", peak.values[row][column] / peak.most), 15, (x as u32 + 4, y as u32 + 12));
+        canvas.label(&fixed(peak.values[row][column] / peak.most, 2), 15, (x as u32 + 17, y as u32 + CELL - 11));
     }
     for index in 0..count {
         let (x, y) = corner(index, index);

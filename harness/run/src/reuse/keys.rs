@@ -1,7 +1,7 @@
 //! What results are stored under.
 
 use calibench_files::folder::digest;
-use calibench_scenario::Subject;
+use calibench_scenario::{Study, Subject};
 use calibench_store::Key;
 
 use super::arithmetic::arithmetic;
@@ -59,6 +59,10 @@ pub struct MethodKeys {
 
 /// The keys of `plan`, unless it measures nothing that could be kept.
 pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
+    if matches!(&plan.scenario.subject, Subject::Views(views) if matches!(views.study, Study::Calibrators(_))) {
+        // Nobody knows when a program changes.
+        return None;
+    }
     let data = match &plan.scenario.subject {
         Subject::Photographs(subject) => {
             if plan.missing().is_some() {

@@ -21,6 +21,12 @@ pub use crate::tally::{Reuse, Tally};
 use crate::trials::{BATCH, Work};
 use crate::{Plan, RunError};
 pub use code::is_known as is_code_known;
+
+/// A digest of the code of adjustments and of what stands before them; of the `program` where that is not known.
+pub fn digest_of_adjusting(program: &str) -> &str {
+    code::digest(code::ADJUSTED, program)
+}
+
 use kept::{Kept, Unit, merged};
 pub(crate) use stamp::Stamp;
 

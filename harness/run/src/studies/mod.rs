@@ -2,6 +2,7 @@
 
 mod adjust;
 pub mod blocks;
+pub mod calibrators;
 pub mod network;
 pub mod printed;
 pub mod recognition;
@@ -18,10 +19,11 @@ use crate::Tools;
 pub use adjust::Adjust;
 
 /// What a study makes of image points; `None` of one that adjusts none. A new study is a line here.
-pub(crate) fn of(study: &Study) -> Option<&dyn Adjust> {
+pub(crate) fn of<'a>(study: &'a Study, tools: Tools<'a>) -> Option<Box<dyn Adjust + 'a>> {
     match study {
-        Study::Network(plan) => Some(&**plan),
-        Study::Blocks(plan) => Some(&**plan),
+        Study::Network(plan) => Some(Box::new(&**plan)),
+        Study::Blocks(plan) => Some(Box::new(&**plan)),
+        Study::Calibrators(plan) => Some(Box::new(calibrators::Study { plan, tools })),
         Study::Points | Study::Transfer { .. } => None,
     }
 }

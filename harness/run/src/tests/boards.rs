@@ -80,6 +80,7 @@ fn every_board_is_pointed_at_by_its_detector() {
         ("chessboard:7x6:30", "parametric_corner"),
         ("charuco:8x6:30:21:DICT_4X4_50", "parametric_corner"),
         ("aprilgrid:4x3:40:0.3", "parametric_corner"),
+        ("gridboard:4x3:40:14:DICT_4X4_50", "parametric_junction"),
         ("circles:8x6:26", "ellipse_edges"),
         ("acircles:4x7:26", "ellipse_edges"),
         ("rings:12:5x4:40:12", "ellipse_edges"),
@@ -97,7 +98,9 @@ fn every_board_is_pointed_at_by_its_detector() {
             // Of discs it holds the eccentricity.
             assert!(dx.hypot(dy) < 0.25, "{word}: {point:?}");
             // 0.002 of noise on edges of 0.8; a bound about anything but a disc's own middle is some times as large, and so is that of a window that cuts it.
-            assert!(point.bound.is_none_or(|bound| bound < 0.003), "{word}: {point:?}");
+            // Of two half edges in place of four the bound is some five times that of a chess corner (README: 0.0651 and 0.0134 px at the same noise).
+            let most = if method == "parametric_junction" { 5.0 * 0.0013 } else { 0.003 };
+            assert!(point.bound.is_none_or(|bound| bound < most), "{word}: {point:?}");
         }
         assert!(frame(&found).0 < 0.1, "{word}: {:?}", frame(&found));
         assert_eq!(value(&found.calibrations[0], Group::Network, "images left out"), None, "{word}");

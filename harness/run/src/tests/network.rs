@@ -24,7 +24,7 @@ fn figure<'a>(figures: &'a [Figure], group: Group, name: &str) -> &'a Figure {
 }
 
 fn checked(job: &Job<'_>, observed: &Observed) -> Vec<Figure> {
-    check::check(job, job.calibration.check.as_ref().unwrap(), observed, EXACT, job.camera).unwrap()
+    check(job, job.calibration.check.as_ref().unwrap(), observed, EXACT, job.camera).unwrap()
 }
 
 /// Without error in the image the points are found where they are; every check point's survey is then off by 3, 4 and 12 mm.

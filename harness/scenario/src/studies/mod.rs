@@ -2,6 +2,7 @@
 //! the other in `read.rs`.
 
 pub mod blocks;
+pub mod calibrators;
 mod named;
 pub mod network;
 mod plan;

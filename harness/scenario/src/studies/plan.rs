@@ -26,6 +26,11 @@ pub trait StudyPlan {
         None
     }
 
+    /// Whether `run --all` leaves it to a command of its own.
+    fn runs_apart(&self) -> bool {
+        false
+    }
+
     /// The pixel pitch of the camera that it adjusts, um.
     fn pitch_um(&self) -> Option<f64> {
         None

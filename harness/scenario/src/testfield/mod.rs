@@ -22,11 +22,11 @@ pub(super) use spans::Spans;
 use wire::{ChessboardWire, CodedWire, Height, HouseWire};
 
 /// The kinds of testfield.
-pub const KINDS: [&str; 12] =
-    ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "dotted", "tags"];
+pub const KINDS: [&str; 13] =
+    ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "gridboard", "circles", "rings", "puzzle", "dotted", "tags"];
 
 /// Those that are boards.
-pub const BOARDS: [&str; 8] = ["chessboard", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "dotted"];
+pub const BOARDS: [&str; 9] = ["chessboard", "board", "charuco", "aprilgrid", "gridboard", "circles", "rings", "puzzle", "dotted"];
 
 /// The unit of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

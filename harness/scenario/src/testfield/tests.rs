@@ -96,13 +96,13 @@ fn mistakes_are_told_with_their_places() {
     let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
     refused(
         "[testfield]\nrows = 3",
-        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, dotted, tags)",
+        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, gridboard, circles, rings, puzzle, dotted, tags)",
     );
     refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
     refused(
         "[testfield]\nkind = 3",
-        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, dotted, tags; found a value of type integer",
+        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, gridboard, circles, rings, puzzle, dotted, tags; found a value of type integer",
     );
     refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
     refused(board, "[testfield] has no `square`");
@@ -159,6 +159,16 @@ fn boards_are_read_with_their_defaults() {
         "aprilgrid:6x5:88:0.3:4:border1:plain",
         88.0,
     );
+    same(
+        "kind = \"gridboard\"\ncolumns = 5\nrows = 7\nmarker = 40\nseparation = 10\ndictionary = \"DICT_6X6_250\"",
+        "gridboard:5x7:40:10:DICT_6X6_250",
+        40.0,
+    );
+    same(
+        "kind = \"gridboard\"\ncolumns = 3\nrows = 2\nmarker = 40\nseparation = 10\ndictionary = \"DICT_4X4_50\"\nfirst = 9\nborder = 2\nmargin = 5",
+        "gridboard:3x2:40:10:DICT_4X4_50:9:border2",
+        5.0,
+    );
     same("kind = \"circles\"\ncolumns = 4\nrows = 11\nspacing = 20\nasymmetric = true\nmargin = 3", "acircles:4x11:20", 3.0);
     same("kind = \"rings\"\ncolumns = 6\nrows = 5\nspacing = 50\ndiameter = 8", "rings:12:6x5:50:8", 50.0);
     same("kind = \"puzzle\"\ncolumns = 23\nrows = 16\nsquare = 30\nplace = [50, 100]", "puzzle:23x16:30:50,100", 30.0);
@@ -188,6 +198,10 @@ fn markers_stand_by_themselves() {
     changed("id = 4", "id = 587", "6:6: `id` is 587: expected 0 to 586");
     changed("up = [0, 1, 0]", "up = [1, 1, 0]", "the axes of plate `tag 4`");
     changed("side = 0.2", "size = 0.2", "10:1: unknown key `size` in [[testfield.tag]]");
+    let grid = "[testfield]\nkind = \"gridboard\"\ncolumns = 5\nrows = 7\nmarker = 40\ndictionary = \"DICT_4X4_50\"\n";
+    refused(grid, "[testfield] has no `separation`");
+    refused(&format!("{grid}separation = 900"), "7:14: `separation` is 900: expected 0.8 to 400");
+    refused(&format!("{grid}separation = 9\nfirst = 16"), "8:9: `first` is 16: expected at most 50");
     let charuco = "[testfield]\nkind = \"charuco\"\ncolumns = 8\nrows = 5\nsquare = 30\n";
     refused(&format!("{charuco}marker = 40\ndictionary = \"DICT_4X4_50\""), "6:10: `marker` is 40");
     refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4\""), "did you mean `DICT_4X4_50`?");
@@ -198,7 +212,7 @@ fn markers_stand_by_themselves() {
 #[test]
 fn any_board_is_read_in_a_word() {
     let word = |word: &str| format!("[testfield]\nkind = \"board\"\nboard = \"{word}\"");
-    for (_, _, example) in calibench_model::boards::KINDS {
+    for (_, example) in calibench_model::boards::examples() {
         let read = plan(&word(example)).unwrap();
         assert_eq!(read.board(), Some(example.parse().unwrap()));
         assert!(BOARDS.contains(&"board") && !read.generate(KEY).unwrap().targets.is_empty());

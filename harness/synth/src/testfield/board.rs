@@ -115,7 +115,7 @@ fn moved(shape: &Shape, errors: &Errors) -> Shape {
 #[cfg(test)]
 mod tests {
     use calibench_model::TargetKind;
-    use calibench_model::boards::KINDS;
+    use calibench_model::boards::examples;
 
     use super::*;
 
@@ -128,7 +128,7 @@ mod tests {
     /// Every kind of board: what is printed at a target is printed where the target is, with and without noise of printing.
     #[test]
     fn every_kind_of_board_is_printed_where_its_targets_are() {
-        for (kind, _, example) in KINDS {
+        for (kind, example) in examples() {
             let smallest = example.parse::<Board>().unwrap().layout().unwrap().points.iter().map(|p| p.size).fold(f64::INFINITY, f64::min);
             for noise in [0.0, 0.01 * smallest] {
                 let field = sheet(example, noise).generate(KEY).unwrap();

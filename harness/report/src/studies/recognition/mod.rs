@@ -20,7 +20,8 @@ const GROUPS: [&str; 4] =
 
 /// What is told of every table.
 const LEGEND: &str = "Counts of all trials. *Targets*: dark areas of whole squares that are a target. *Labelled*: those with a name and a place within 2 px of their truth. *Wrong label*: a name whose target is elsewhere. \
-    *Alone / joint*: share taken for the other kind of their size, by what they look like alone, and as the best of six decisions on the four of a size; after ± half its 95 % interval over the trials.";
+    *Alone / joint*: share taken for the other kind of their size, by what they look like alone, and as the best of six decisions on the four of a size; after ± half its 95 % interval over the trials. *Lines off*: root mean square distance, across, of the grid's lines from the true places of the nodes on them, and that of the one line of a trial \
+    of which it is largest, means over the trials.";
 
 /// Counts of a scenario's recognisers.
 struct Counts<'a> {
@@ -75,6 +76,11 @@ impl<'a> Counts<'a> {
             format!("{:.0} of {:.0}", count(Quantity::SeenGrids), count(Quantity::SeenImages)),
             format!("{:.0}", count(Quantity::SeenTargets)),
         ];
+        let mean = |quantity: Quantity| {
+            let summary = self.found.of_set(self.method, SET, quantity.of(&[classifier, images]));
+            summary.and_then(|summary| summary.value.mean()).map_or_else(String::new, |mean| fixed(mean, 3))
+        };
+        row.push(format!("{} / {}", mean(Quantity::LineError), mean(Quantity::LineErrorMost)));
         row.extend([of(Quantity::Labelled, Quantity::SeenTargets), of(Quantity::WrongLabels, Quantity::Labels)]);
         for group in GROUPS {
             let share = |how: &str| self.percent(Quantity::WrongKindsPercent.of(&[classifier, how, group, images]));
@@ -84,7 +90,7 @@ impl<'a> Counts<'a> {
     }
 }
 
-const COLUMNS: [&str; 4] = ["grids", "targets", "labelled, %", "wrong label, %"];
+const COLUMNS: [&str; 5] = ["grids", "targets", "lines off: all / most, px", "labelled, %", "wrong label, %"];
 
 fn header<'a>(first: &[&'a str]) -> Vec<&'a str> {
     const SIZES: [&str; 4] = [

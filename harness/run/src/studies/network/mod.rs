@@ -19,6 +19,7 @@ use calibench_scenario::{Calibration, ViewsSubject};
 #[cfg(test)]
 pub(crate) use adjustment::control_point;
 pub use adjustment::{Adjusted, Wanted, adjusted, resections};
+pub use check::check;
 pub use job::Job;
 pub use observe::{ImagePoint, Observed, draw, observe};
 use seen::Seen;
@@ -83,7 +84,7 @@ fn one(
         }
         poses = Some(adjusted.poses);
         if let Some(plan) = job.calibration.check.as_ref().filter(|_| set == 0) {
-            match check::check(job, plan, observed, method, &adjusted.camera) {
+            match check(job, plan, observed, method, &adjusted.camera) {
                 Ok(found) => figures.extend(found),
                 Err(why) => check_failed = Some(why),
             }

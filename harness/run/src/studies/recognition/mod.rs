@@ -2,6 +2,8 @@
 //!
 //! A blob of a whole square is a target if the true place of one is nearest and within 2 px; how it was taken is compared with what it is.
 
+mod lines;
+
 use std::collections::BTreeMap;
 
 use calibench_files::NewFolder;
@@ -15,15 +17,20 @@ use calibench_scenario::Recognition;
 use calibench_synth::view::TargetTruth;
 
 use crate::RunError;
+use crate::prepared::PreparedView;
+use lines::Lines;
 
 /// How far a blob may lie from the target that it is, px.
 const NEAR: f64 = 2.0;
 /// How far a recognised target may lie from its true place, px: beyond, its label is wrong.
 const RIGHT: f64 = 2.0;
 
-/// What is counted, by classifier and figure.
+/// What is counted, by classifier and figure, and where lines lie.
 #[derive(Clone, Debug, Default)]
-pub struct Counted(BTreeMap<(usize, FigureName), f64>);
+pub struct Counted {
+    counts: BTreeMap<(usize, FigureName), f64>,
+    lines: Lines,
+}
 
 /// Where measuring starts: of each target, by its place in the field; and what was counted.
 pub struct Recognised {
@@ -52,8 +59,8 @@ pub fn keep_steps(plan: &Recognition, image: &Image, (view, name): (usize, &str)
     Ok(())
 }
 
-/// Recognises the field in an image, whose station has the place `view`, with every classifier.
-pub fn recognise(plan: &Recognition, image: &Image, view: usize, truth: &[TargetTruth], field: &Testfield) -> Recognised {
+/// Recognises the field in the image of `view`, whose station has the place `place`, with every classifier.
+pub fn recognise(plan: &Recognition, image: &Image, (place, view): (usize, &PreparedView<'_>), field: &Testfield) -> Recognised {
     let kinds: Vec<TargetKind> = field.targets.iter().map(|target| target.kind).collect();
     let mut recognised = Recognised { starts: BTreeMap::new(), counted: Counted::default() };
     for (which, found) in recognise_each(&plan.recognisers, image).into_iter().enumerate() {
@@ -63,8 +70,9 @@ pub fn recognise(plan: &Recognition, image: &Image, view: usize, truth: &[Target
             let start = |kind, affine, position| Start { kind: Some(kind), affine: Some(affine), ..Start::at(position) };
             recognised.starts = targets.map(|t| (t.target, start(t.kind, t.affine, t.position))).collect();
         }
-        for (name, _) in plan.images.iter().filter(|(_, images)| images.contains(&view)) {
-            recognised.counted.image((which, &plan.classifiers[which]), name, found.as_ref(), truth, &kinds);
+        for (name, _) in plan.images.iter().filter(|(_, images)| images.contains(&place)) {
+            recognised.counted.image((which, &plan.classifiers[which]), name, found.as_ref(), &view.truth, &kinds);
+            recognised.counted.lines.image((which, name), found.as_ref(), &view.nodes);
         }
     }
     recognised
@@ -72,12 +80,13 @@ pub fn recognise(plan: &Recognition, image: &Image, view: usize, truth: &[Target
 
 impl Counted {
     fn add(&mut self, which: usize, figure: FigureName, count: f64) {
-        *self.0.entry((which, figure)).or_default() += count;
+        *self.counts.entry((which, figure)).or_default() += count;
     }
 
     /// Adds what others have counted.
     pub fn join(&mut self, other: Self) {
-        other.0.into_iter().for_each(|((which, figure), count)| self.add(which, figure, count));
+        other.counts.into_iter().for_each(|((which, figure), count)| self.add(which, figure, count));
+        self.lines.join(other.lines);
     }
 
     fn image(
@@ -127,15 +136,15 @@ impl Counted {
 
     /// The figures of a trial, under the set of place `set`, beside the first method.
     pub fn calibrated(self, plan: &Recognition, set: usize) -> Calibrated {
-        let shares = self.shares(plan);
-        let counts = self.0.into_iter().map(|((_, figure), count)| (figure, count));
-        let figures = counts.chain(shares).map(|(figure, value)| Figure::plain(figure, value, ""));
+        let (shares, lines) = (self.shares(plan), self.lines.figures(&plan.classifiers));
+        let counts = self.counts.into_iter().map(|((_, figure), count)| (figure, count));
+        let figures = counts.chain(shares).map(|(figure, value)| Figure::plain(figure, value, "")).chain(lines);
         Calibrated { method: 0, set, outcome: Ok(figures.collect()), check_failed: None }
     }
 
     /// Shares of all images together and of each group of images.
     fn shares(&self, plan: &Recognition) -> Vec<(FigureName, f64)> {
-        let get = |which: usize, figure: FigureName| self.0.get(&(which, figure)).copied().unwrap_or(0.0);
+        let get = |which: usize, figure: FigureName| self.counts.get(&(which, figure)).copied().unwrap_or(0.0);
         let mut shares = Vec::new();
         for (which, classifier) in plan.classifiers.iter().enumerate() {
             for group in SizeGroup::ALL.map(SizeGroup::name) {
@@ -215,7 +224,7 @@ mod tests {
     fn counted(found: Option<&Found>) -> impl Fn(&str) -> Option<f64> + use<> {
         let mut counted = Counted::default();
         counted.image((0, "modern"), "all", found, &truth(), &KINDS);
-        move |name| counted.0.get(&(0, FigureName::parse(Group::Network, &format!("modern/{name}/all")).unwrap())).copied()
+        move |name| counted.counts.get(&(0, FigureName::parse(Group::Network, &format!("modern/{name}/all")).unwrap())).copied()
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Boards with markers, circles or ring codes, and free-standing markers.
 
 use calibench_diagnostics::Problem;
-use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Dotted, Puzzle, Rings};
+use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Dotted, GridBoard, Marks, Puzzle, Rings};
 use calibench_synth::testfield::{BoardSheet, Tag, Tags};
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
@@ -13,10 +13,12 @@ use crate::section::Section;
 
 pub mod wire;
 
-use wire::{AprilGridWire, BoardWire, CharucoWire, CirclesWire, DottedWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire};
+use wire::{
+    AprilGridWire, BoardWire, CharucoWire, CirclesWire, DottedWire, GridBoardWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire,
+};
 
 /// The kinds that are one sheet.
-pub const SHEETS: [&str; 7] = ["board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "dotted"];
+pub const SHEETS: [&str; 8] = ["board", "charuco", "aprilgrid", "gridboard", "circles", "rings", "puzzle", "dotted"];
 /// The keys that all of them have.
 const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
 
@@ -27,7 +29,8 @@ pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -
         "board" => in_a_word(&section.read(&COMMON, problems)?, problems)?,
         "charuco" => charuco(&section.read(&COMMON, problems)?, problems)?,
         "aprilgrid" => aprilgrid(&section.read(&COMMON, problems)?, problems)?,
-        "circles" => circles(&section.read(&COMMON, problems)?),
+        "gridboard" => gridboard(&section.read(&COMMON, problems)?, problems)?,
+        "circles" => circles(&section.read(&COMMON, problems)?, problems)?,
         "puzzle" => puzzle(&section.read(&COMMON, problems)?),
         "dotted" => dotted(&section.read(&COMMON, problems)?),
         _ => rings(&section.read(&COMMON, problems)?),
@@ -51,6 +54,7 @@ fn in_a_word(wire: &BoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f6
         Board::Chessboard(board) => board.square,
         Board::Charuco(board) => board.square,
         Board::AprilGrid(board) => board.tag,
+        Board::GridBoard(board) => board.marker,
         Board::Circles(board) => board.spacing,
         Board::Rings(board) => board.spacing,
         Board::Puzzle(board) => board.square,
@@ -100,8 +104,28 @@ fn aprilgrid(wire: &AprilGridWire, problems: &mut Vec<Problem>) -> Option<(Board
     Some((Board::AprilGrid(board), wire.tag.0))
 }
 
-fn circles(wire: &CirclesWire) -> (Board, f64) {
+fn gridboard(wire: &GridBoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
+    let board = GridBoard {
+        columns: wire.columns.0,
+        rows: wire.rows.0,
+        marker: wire.marker.0,
+        separation: wire.separation.0,
+        dictionary: dictionary(&wire.dictionary, problems)?,
+        first: wire.first.map_or(0, |first| first.0 as u32),
+        border: wire.border.map_or(1, |cells| cells.0),
+    };
+    Some((Board::GridBoard(board), wire.marker.0))
+}
+
+fn circles(wire: &CirclesWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
     let spacing = wire.spacing.0;
+    let marks = match &wire.marks {
+        Some(texts) => {
+            let parts: Vec<&str> = texts.as_ref().iter().map(String::as_str).collect();
+            Marks::read(&parts).map_err(|error| problems.push(Problem::new(texts.span(), error))).ok()?
+        }
+        None => Marks::default(),
+    };
     let board = Circles {
         columns: wire.columns.0,
         rows: wire.rows.0,
@@ -109,8 +133,9 @@ fn circles(wire: &CirclesWire) -> (Board, f64) {
         diameter: wire.diameter.map_or(0.5 * spacing, |diameter| diameter.0),
         hole: wire.hole.map(|hole| hole.0),
         asymmetric: wire.asymmetric.unwrap_or(false),
+        marks,
     };
-    (Board::Circles(board), spacing)
+    Some((Board::Circles(board), spacing))
 }
 
 fn rings(wire: &RingsWire) -> (Board, f64) {

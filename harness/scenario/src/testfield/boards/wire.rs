@@ -84,6 +84,27 @@ pub struct AprilGridWire {
     pub chamfer: Option<Fraction>,
 }
 
+/// OpenCV's GridBoard: rows of ArUco markers, the first at the upper left; its upper left corner, that of the first marker (t0c0), is the origin; x to the right, y upwards.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GridBoardWire {
+    /// Markers in a row.
+    pub columns: Count,
+    /// Rows of markers.
+    pub rows: Count,
+    /// The side of a marker, object units.
+    pub marker: Length,
+    /// The gap between two markers, object units.
+    pub separation: Length,
+    /// The dictionary by its name in OpenCV, as in "DICT_6X6_250".
+    #[schemars(with = "String")]
+    pub dictionary: Spanned<String>,
+    /// The id of the first marker. Default 0.
+    pub first: Option<CountOrNone>,
+    /// Cells of a marker's dark frame, 1 or 2. Default 1.
+    pub border: Option<Count>,
+}
+
 /// Rows of discs or rings; the middle of the first at the upper left, r1c1, is the origin; x to the right, y upwards.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -100,6 +121,9 @@ pub struct CirclesWire {
     pub hole: Option<Length>,
     /// Whether every other row is moved by the spacing to the right. Default false.
     pub asymmetric: Option<bool>,
+    /// Circles unlike the others, as in `["20@r10c1"]`: a disc of this diameter at that point; "20/10@r1c1,r1c5" rings, "gap@r4c4" no circle. Object units; at most 8 in all.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub marks: Option<Spanned<Vec<String>>>,
 }
 
 /// Rows of ring codes; the middle of the first at the upper left is the origin; x to the right, y upwards.

@@ -69,7 +69,7 @@ impl BoardSolver for Counter {
 #[test]
 fn rendered_images_are_measured_and_calibrated() {
     let scenario = measured();
-    let tools = Tools { detector: Some(&Blind), solver: Some(&Counter) };
+    let tools = Tools { detector: Some(&Blind), solver: Some(&Counter), calibrators: &[] };
     let mut trials = Vec::new();
     let plan = Plan::new(&scenario, tools, "".into());
     plan.run(&|| (), &mut |trial| {
