@@ -1,4 +1,4 @@
-//! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, `cfg(wide_photographs)`,
+//! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, `cfg(wide_photographs)`, rigs and free networks as `cfg(rigs)`,
 //! packages of other tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`, Chromium with what drives it as `cfg(browser)`.
 
 use std::env;
@@ -26,6 +26,7 @@ fn main() {
         ("camera_files", "cameras"),
         ("webcam", "webcam"),
         ("wide_photographs", "reports/01-gopro-wide"),
+        ("rigs", "rigs"),
     ]);
     println!("cargo::rustc-check-cfg=cfg(python)");
     if Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {

@@ -21,6 +21,7 @@ mod doubts;
 mod eccentricity;
 mod finders;
 mod fuzz;
+mod free_networks;
 mod galo;
 mod galo_networks;
 mod gate;

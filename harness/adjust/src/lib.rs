@@ -7,7 +7,7 @@
 //!
 //! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
 //! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::quality`] (both from one inverse),
-//! [`Solution::significance`] of parameters, [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`],
+//! [`Solution::significance`] of parameters, [`Solution::in_datum`] (S-transformation), [`Solution::length`], [`Solution::projection_uncertainty`],
 //! [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders, [`adjust_robustly`] holds them back.
 
 pub mod approximate;
@@ -26,11 +26,11 @@ mod undetermined;
 pub use defect::{Defect, Direction, Reason};
 pub use error::AdjustError;
 pub use network::{
-    Attitude, Centre, Counts, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, OnSurface, Precision,
+    Attitude, Centre, Counts, Datum, DistanceObservation, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, OnSurface, Precision,
     Status, Surface,
 };
 pub use quality::{
-    Comparison, Correlation, Covariances, Distance, Found, Held, ObservedReliability, PointReliability, Reliability, Residual,
+    Comparison, Correlation, Covariances, Distance, Found, Held, Length, ObservedReliability, PointReliability, Reliability, Residual,
     Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, frame_weight, image_information,
     scale_of, snoop,
 };

@@ -5,7 +5,7 @@ use calibench_model::camera::Camera;
 use nalgebra::Point3;
 
 use crate::AdjustError;
-use crate::datum::{hold, transformed};
+use crate::datum::{free, hold, transformed};
 use crate::network::{Counts, Datum, Layout, Network, NetworkError};
 use crate::normal::{Loss, Scratch};
 use crate::solve::{End, Engine, Solved};
@@ -79,7 +79,7 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
     let solved = determined(&engine, &mut end)?;
     end.normals.release();
     let solution = Solution { engine, end, solved, datum: network.datum.clone() };
-    if network.datum == Datum::Inner { solution.in_datum(&Datum::Inner) } else { Ok(solution) }
+    if matches!(network.datum, Datum::Inner | Datum::InnerOver(_)) { solution.in_datum(&network.datum) } else { Ok(solution) }
 }
 
 /// The normal equations at the end, solved.
@@ -163,7 +163,8 @@ impl<'n> Solution<'n> {
     /// Source: Baarda 1973; van Mierlo 1980.
     pub fn in_datum(&self, datum: &Datum) -> Result<Self, AdjustError> {
         let refuse = |why: &str| AdjustError::from(NetworkError::Datum(why.into()));
-        if self.counts().constraints != crate::datum::COUNT || *datum == Datum::Control {
+        let is_minimal = self.counts().constraints == free(self.engine.network);
+        if !is_minimal || *datum == Datum::Control {
             return Err(refuse("only a minimal datum can be exchanged, for another minimal one"));
         }
         let network = self.engine.network;

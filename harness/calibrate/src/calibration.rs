@@ -122,6 +122,11 @@ impl Calibration<'_> {
         Ok(NamedCamera { pitch_um: optics.pitch_um, covariance, ..NamedCamera::new(name, *self.camera(index)) })
     }
 
+    /// The variance factor of [`Self::covariances`].
+    pub(crate) fn variance(&self) -> Variance {
+        if self.solution.counts().redundancy() > 0 { Variance::Estimated } else { Variance::Apriori }
+    }
+
     /// How many cameras there are.
     pub fn cameras(&self) -> usize {
         self.solution.cameras().len()

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use calibench_adjust::Datum;
 use thiserror::Error;
 
-use super::CalibrationError;
+use super::{CalibrationError, few};
 
 /// What fixes the frame of the object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,6 +17,8 @@ pub enum DatumChoice {
     Fixed,
     /// Control points are start values only: inner constraints.
     Free,
+    /// The same, and the constraints look at these targets alone: they stay closest to their start values.
+    FreeOver(Vec<String>),
     /// Seven coordinates held; the others are start values only.
     Minimal {
         /// Targets whose X and Y are held.
@@ -29,7 +31,7 @@ pub enum DatumChoice {
 /// Text that is no datum.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error(
-    "`{0}` is no datum: expected control, fixed, free, or minimal:A,B,C,D,E with two targets whose X and Y are held and three whose Z is"
+    "`{0}` is no datum: expected control, fixed, free, free:A,B,C,... with the targets that stay closest to their start values, or minimal:A,B,C,D,E with two targets whose X and Y are held and three whose Z is"
 )]
 pub struct NoDatum(String);
 
@@ -41,13 +43,22 @@ impl FromStr for DatumChoice {
             "control" => Ok(Self::Control),
             "fixed" => Ok(Self::Fixed),
             "free" => Ok(Self::Free),
-            _ => minimal(text).ok_or_else(|| NoDatum(text.into())),
+            _ => minimal(text).or_else(|| free_over(text)).ok_or_else(|| NoDatum(text.into())),
         }
     }
 }
 
+fn names(text: &str, kind: &str) -> Option<Vec<String>> {
+    Some(text.strip_prefix(kind)?.split(',').map(|name| name.trim().to_owned()).collect())
+}
+
+/// Three points and more fix a frame.
+fn free_over(text: &str) -> Option<DatumChoice> {
+    names(text, "free:").filter(|names| names.len() > 2 && names.iter().all(|name| !name.is_empty())).map(DatumChoice::FreeOver)
+}
+
 fn minimal(text: &str) -> Option<DatumChoice> {
-    let names: Vec<String> = text.strip_prefix("minimal:")?.split(',').map(|name| name.trim().to_owned()).collect();
+    let names = names(text, "minimal:")?;
     let [a, b, c, d, e] = <[String; 5]>::try_from(names).ok()?;
     Some(DatumChoice::Minimal { horizontal: [a, b], vertical: [c, d, e] })
 }
@@ -55,7 +66,7 @@ fn minimal(text: &str) -> Option<DatumChoice> {
 impl DatumChoice {
     /// Whether control points are start values only.
     pub(super) fn is_minimal(&self) -> bool {
-        matches!(self, Self::Free | Self::Minimal { .. })
+        matches!(self, Self::Free | Self::FreeOver(_) | Self::Minimal { .. })
     }
 
     /// For the adjustment; `place` finds a control point among the network's points.
@@ -64,6 +75,7 @@ impl DatumChoice {
         match self {
             Self::Control | Self::Fixed => Ok(Datum::Control),
             Self::Free => Ok(Datum::Inner),
+            Self::FreeOver(targets) => Ok(Datum::InnerOver(targets.iter().map(of).collect::<Result<_, _>>()?)),
             Self::Minimal { horizontal: [a, b], vertical: [c, d, e] } => {
                 Ok(Datum::Minimal { horizontal: [of(a)?, of(b)?], vertical: [of(c)?, of(d)?, of(e)?] })
             }
@@ -76,6 +88,7 @@ impl DatumChoice {
             Self::Control => "control points as their file says: weighted where it gives standard deviations, fixed where not".into(),
             Self::Fixed => "all control points fixed".into(),
             Self::Free => "inner constraints over all object points (free network)".into(),
+            Self::FreeOver(targets) => format!("inner constraints over {} (free network)", few(targets)),
             Self::Minimal { horizontal, vertical } => {
                 format!("X and Y of {} and Z of {} held", horizontal.join(", "), vertical.join(", "))
             }
@@ -96,7 +109,8 @@ mod tests {
             vertical: names(&["c", "d", "e"]).try_into().unwrap(),
         };
         assert_eq!("minimal:a,b/1,c, d,e".parse(), Ok(expected));
-        for wrong in ["", "minimal", "minimal:a,b,c,d", "minimal:a,b,c,d,e,f", "inner "] {
+        assert_eq!("free:a, b,c/1".parse(), Ok(DatumChoice::FreeOver(names(&["a", "b", "c/1"]))));
+        for wrong in ["free:", "free:a,b", "free:a,,b", "", "minimal", "minimal:a,b,c,d", "minimal:a,b,c,d,e,f", "inner "] {
             assert!(wrong.parse::<DatumChoice>().is_err(), "{wrong}");
         }
     }

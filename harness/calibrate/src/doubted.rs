@@ -13,6 +13,8 @@ pub enum Subject {
     GrossErrors,
     /// The coordinates of control points.
     Control,
+    /// Measured distances.
+    Distances,
     /// The lens: more than the model pictures.
     Lens,
     /// One pose for all rows of an image.
@@ -37,10 +39,11 @@ pub enum Subject {
 
 impl Subject {
     /// All of them, with their names for programs and what each is in words.
-    pub const ALL: [(Self, &'static str, &'static str); 13] = [
+    pub const ALL: [(Self, &'static str, &'static str); 14] = [
         (Self::Precision, "precision", "the precision of image points"),
         (Self::GrossErrors, "gross-errors", "gross errors of image points"),
         (Self::Control, "control", "the coordinates of control points"),
+        (Self::Distances, "distances", "measured distances"),
         (Self::Lens, "lens", "the lens"),
         (Self::Shutter, "shutter", "one pose for all rows of an image"),
         (Self::Frame, "frame", "the size of the images"),

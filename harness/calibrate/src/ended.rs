@@ -23,5 +23,6 @@ pub(crate) fn ended(solution: &Solution<'_>) -> Network {
         surfaces: surfaces.collect(),
         observations: whole.observations.clone(),
         datum: whole.datum.clone(),
+        distances: whole.distances.clone(),
     }
 }

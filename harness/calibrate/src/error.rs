@@ -27,7 +27,7 @@ pub enum CalibrationError {
         station: String,
     },
     /// Images without a pose.
-    #[error("no exterior orientation: {}", images.iter().map(|(name, why)| format!("image {name}: {why}")).collect::<Vec<_>>().join("; "))]
+    #[error("no exterior orientation: {}", without_pose(images))]
     NoPose {
         /// Each with the reason.
         images: Vec<(String, String)>,
@@ -69,6 +69,24 @@ pub enum CalibrationError {
     DatumTarget {
         /// Its name.
         target: String,
+    },
+    /// A target of a distance or length that takes no part.
+    #[error("a {of} names {target}, which takes no part: {why}{}", near.as_ref().map_or(String::new(), |near| format!("; is it `{near}`?")))]
+    LengthTarget {
+        /// Whether of a measured distance or of a length that was asked for.
+        of: &'static str,
+        /// Its name.
+        target: String,
+        /// Why not.
+        why: String,
+        /// The measured target whose name is nearest.
+        near: Option<String>,
+    },
+    /// No object coordinates from image points alone.
+    #[error("no object coordinates from image points alone: {why}")]
+    NoModel {
+        /// The reason, and what to do.
+        why: String,
     },
     /// A bent board was asked for, and there is no board.
     #[error("the board cannot be bent: {why}; expected --board-shape flat")]
@@ -120,6 +138,12 @@ pub enum CalibrationError {
 pub fn few(names: &[String]) -> String {
     let shown = names.iter().take(5).cloned().collect::<Vec<_>>().join(", ");
     if names.len() > 5 { format!("{shown} and {} more", names.len() - 5) } else { shown }
+}
+
+/// Some images with their reasons, and how many more there are.
+fn without_pose(images: &[(String, String)]) -> String {
+    let shown = images.iter().take(5).map(|(name, why)| format!("image {name}: {why}")).collect::<Vec<_>>().join("; ");
+    if images.len() > 5 { format!("{shown}; and {} images more", images.len() - 5) } else { shown }
 }
 
 fn hint(error: &AdjustError) -> &'static str {

@@ -1,6 +1,10 @@
 //! The network of a survey.
 
-use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Precision};
+use std::collections::HashMap;
+
+use calibench_adjust::{DistanceObservation, Exterior, ImageObservation, Interior, Network, ObjectPoint, Precision};
+use calibench_diagnostics::nearest;
+use calibench_model::MeasuredDistance;
 use calibench_model::camera::Camera;
 
 use super::start::Starts;
@@ -47,7 +51,49 @@ pub(super) fn network(
     let control =
         |name: &str| survey.target_called(name).filter(|&target| survey.control(target).is_some()).and_then(|target| place[target]);
     let datum = settings.datum.datum(control)?;
-    Ok((Network { cameras, images, points, observations, datum, ..Network::default() }, sights, left_out))
+    let distances = distances(survey, settings, &place, &starts.points)?;
+    Ok((Network { cameras, images, points, observations, distances, datum, ..Network::default() }, sights, left_out))
+}
+
+/// The distances between the points that take part.
+fn distances(
+    survey: &Survey,
+    settings: &Settings,
+    place: &[Option<usize>],
+    starts: &[Result<nalgebra::Point3<f64>, String>],
+) -> Result<Vec<DistanceObservation>, CalibrationError> {
+    let end = |name: &String| {
+        let target = target(survey, "distance", name)?;
+        let why = || starts[target].as_ref().err().cloned().unwrap_or_default();
+        place[target].ok_or_else(|| CalibrationError::LengthTarget { of: "distance", target: name.clone(), why: why(), near: None })
+    };
+    let of = |distance: &MeasuredDistance| {
+        let [from, to] = &distance.targets;
+        Ok(DistanceObservation { points: [end(from)?, end(to)?], value: distance.value, sigma: distance.sigma })
+    };
+    settings.distances.iter().map(of).collect()
+}
+
+/// Points between which lengths are asked for.
+pub(super) fn lengths(survey: &Survey, settings: &Settings, network: &Network) -> Result<Vec<[usize; 2]>, CalibrationError> {
+    let place: HashMap<&str, usize> = network.points.iter().enumerate().map(|(place, point)| (point.name.as_str(), place)).collect();
+    let end = |name: &String| {
+        target(survey, "length", name)?;
+        let why = || "it has no coordinates".to_owned();
+        place.get(name.as_str()).copied().ok_or_else(|| CalibrationError::LengthTarget { of: "length", target: name.clone(), why: why(), near: None })
+    };
+    let both = |[from, to]: &[String; 2]| match from == to {
+        true => Err(CalibrationError::LengthTarget { of: "length", target: from.clone(), why: "both ends are it".into(), near: None }),
+        false => Ok([end(from)?, end(to)?]),
+    };
+    if settings.lengths.is_empty() { Ok(Vec::new()) } else { settings.lengths.iter().map(both).collect() }
+}
+
+fn target(survey: &Survey, of: &'static str, name: &str) -> Result<usize, CalibrationError> {
+    survey.target_called(name).ok_or_else(|| {
+        let near = nearest(name, (0..survey.targets()).map(|target| survey.target(target))).map(str::to_owned);
+        CalibrationError::LengthTarget { of, target: name.to_owned(), why: "no image shows it".into(), near }
+    })
 }
 
 pub(super) fn interior(optics: &Optics, camera: &Camera) -> Result<Interior, CalibrationError> {

@@ -36,6 +36,8 @@ pub struct Prepared {
     pub eccentricity: Option<Eccentricity>,
     /// The sight behind each observation of the network.
     pub sights: Vec<u32>,
+    /// Points of the network between which lengths are asked for.
+    pub(crate) lengths: Vec<[usize; 2]>,
     /// Rows that take no part, with the reason.
     pub left_out: Vec<LeftOut>,
     /// Targets that a method was given and that have no position; [`prepare`] leaves it empty. They have a row in the residuals' table.
@@ -72,8 +74,9 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         rivals,
         shape,
         held: Vec::new(),
-        network,
         eccentricity: None,
+        lengths: network::lengths(survey, settings, &network)?,
+        network,
         sights,
         left_out,
         unmeasured: LostRows::default(),
@@ -91,7 +94,7 @@ impl Prepared {
 
 /// `settings` with the datum that a board's shape asks for: every corner is free in a free network, where the shape is no question of its own.
 fn with_shape(settings: &Settings) -> Result<Settings, CalibrationError> {
-    let (mut settings, is_control) = (settings.clone(), settings.datum == DatumChoice::Control || settings.datum == DatumChoice::Fixed);
+    let (mut settings, is_control) = (settings.clone(), !settings.datum.is_minimal());
     match settings.shape {
         BoardShape::Free if is_control => settings.datum = DatumChoice::Free,
         BoardShape::Tested if !is_control => settings.shape = BoardShape::Free,

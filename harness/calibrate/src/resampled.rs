@@ -92,8 +92,9 @@ fn part(whole: &Network, left_out: &[usize], keeps: impl Fn(usize) -> bool) -> (
         }
         observations.push(ImageObservation { image, ..*o });
     }
-    let (cameras, points) = (whole.cameras.clone(), whole.points.clone());
-    (Network { cameras, images, points, observations, datum: whole.datum.clone(), surfaces: whole.surfaces.clone() }, left_out)
+    let (cameras, points, distances) = (whole.cameras.clone(), whole.points.clone(), whole.distances.clone());
+    let (datum, surfaces) = (whole.datum.clone(), whole.surfaces.clone());
+    (Network { cameras, images, points, observations, distances, datum, surfaces }, left_out)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! How to calibrate.
 
 use calibench_adjust::Variance;
-use calibench_model::ObservedStation;
+use calibench_model::{MeasuredDistance, ObservedStation};
 
 use crate::{BoardShape, DatumChoice, Discs, GrossErrors, Optics};
 
@@ -26,6 +26,10 @@ pub struct Settings {
     pub discs: Option<Discs>,
     /// Poses that were observed, or parts of them.
     pub stations: Vec<ObservedStation>,
+    /// Distances that were measured between targets.
+    pub distances: Vec<MeasuredDistance>,
+    /// Targets between which the adjusted length is asked for.
+    pub lengths: Vec<[String; 2]>,
 }
 
 /// The a-priori standard deviation of an image coordinate where none is given, px.
@@ -44,6 +48,8 @@ impl Settings {
             covariances: false,
             discs: None,
             stations: Vec::new(),
+            distances: Vec::new(),
+            lengths: Vec::new(),
         }
     }
 

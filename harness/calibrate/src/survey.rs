@@ -98,6 +98,11 @@ impl Survey {
         Self { images, points, by_image, by_target, known, control, discs }
     }
 
+    /// The points alone.
+    pub(crate) fn into_points(self) -> Points {
+        self.points
+    }
+
     /// How many targets were measured.
     pub fn targets(&self) -> usize {
         self.known.len()

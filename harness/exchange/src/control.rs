@@ -19,6 +19,7 @@ const NORMAL: [&str; 3] = ["nX", "nY", "nZ"];
 const FORM: Form = Form {
     what: "control file",
     key: "target",
+    partner: None,
     required: &["X", "Y", "Z"],
     optional: &[&SIGMAS, &RADIUS, &NORMAL],
     others: false,

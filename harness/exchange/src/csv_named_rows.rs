@@ -17,6 +17,8 @@ pub(crate) struct Form {
     pub(crate) what: &'static str,
     /// The column with the name of a row, of which each is there once.
     pub(crate) key: &'static str,
+    /// The column with a second name, of rows that stand for a pair: then each pair is there once, in whichever order.
+    pub(crate) partner: Option<&'static str>,
     /// Columns of numbers that must be there.
     pub(crate) required: &'static [&'static str],
     /// Groups of columns of numbers that may be there, each whole or not at all.
@@ -31,6 +33,8 @@ pub(crate) struct Form {
 pub(crate) struct Row {
     pub(crate) line: u64,
     pub(crate) name: String,
+    /// The second name, or nothing.
+    pub(crate) partner: String,
     pub(crate) numbers: Vec<f64>,
     optional: Vec<Option<Vec<f64>>>,
 }
@@ -73,9 +77,15 @@ impl Form {
         while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
             let line = line_of(text, &record);
             let row = self.row(&Cells { file, places: &places, record: &record, line })?;
-            let place = seen.place(&row.name);
+            let place = match self.partner {
+                None => seen.place(&row.name),
+                Some(_) => seen.place(&format!("{:?}", [row.name.as_str().min(&row.partner), row.name.as_str().max(&row.partner)])),
+            };
             if let Some(earlier) = lines.get(place) {
-                let problem = format!("`{}` is already on line {earlier}; expected each {} once", row.name, self.key);
+                let problem = match self.partner {
+                    None => format!("`{}` is already on line {earlier}; expected each {} once", row.name, self.key),
+                    Some(_) => format!("`{}` and `{}` are already on line {earlier}; expected each pair once", row.name, row.partner),
+                };
                 return Err(wrong(file, Some(line), Some(self.key), problem));
             }
             lines.push(line);
@@ -86,7 +96,7 @@ impl Form {
     }
 
     fn columns(&self) -> Vec<&'static str> {
-        std::iter::once(self.key).chain(self.required.iter().copied()).collect()
+        std::iter::once(self.key).chain(self.partner).chain(self.required.iter().copied()).collect()
     }
 
     fn places(&self, file: &str, header: &StringRecord) -> Result<HashMap<String, usize>, PointFileError> {
@@ -115,15 +125,18 @@ impl Form {
     }
 
     fn row(&self, cells: &Cells<'_>) -> Result<Row, PointFileError> {
-        let name = cells.text(self.key).ok_or_else(|| cells.wrong(self.key, "is empty; expected a name".into()))?;
-        let name = escape::from_cell(name).to_owned();
+        let named = |column: &str| {
+            let name = cells.text(column).ok_or_else(|| cells.wrong(column, "is empty; expected a name".into()))?;
+            Ok(escape::from_cell(name).to_owned())
+        };
+        let (name, partner) = (named(self.key)?, self.partner.map(named).transpose()?.unwrap_or_default());
         let numbers = self.required.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()?;
         let group = |group: &&[&str]| {
             let given = group.iter().any(|column| cells.text(column).is_some());
             given.then(|| group.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()
         };
         let optional = self.optional.iter().map(group).collect::<Result<_, _>>()?;
-        Ok(Row { line: cells.line, name, numbers, optional })
+        Ok(Row { line: cells.line, name, partner, numbers, optional })
     }
 }
 

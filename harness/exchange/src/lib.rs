@@ -1,7 +1,8 @@
-//! Tables of other tools and of ours: image coordinates, control, stations, and the list of rendered images.
+//! Tables of other tools and of ours: image coordinates, control, distances, stations, and the list of rendered images.
 
 pub mod control;
 mod csv_named_rows;
+pub mod distances;
 pub mod fingerprint;
 pub mod points;
 pub mod points_write;
@@ -9,6 +10,7 @@ pub mod rendered;
 pub mod stations;
 
 pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
+pub use distances::read_distances;
 pub use fingerprint::Fingerprint;
 pub use points::{PointFile, PointFileError, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};

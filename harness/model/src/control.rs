@@ -1,4 +1,4 @@
-//! Points of known object coordinates: control.
+//! What is known of an object: points of known coordinates (control), and distances.
 
 /// A point of known object coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +11,17 @@ pub struct ControlRow {
     pub sigmas: Option<[f64; 3]>,
     /// Of a disc: boxed, as few targets say so.
     pub disc: Option<Box<ControlDisc>>,
+}
+
+/// A measured distance between two targets, as the length of a scale bar.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredDistance {
+    /// The targets at its ends.
+    pub targets: [String; 2],
+    /// Object units.
+    pub value: f64,
+    /// Its standard deviation, object units.
+    pub sigma: f64,
 }
 
 /// What is known of a target that is a disc.

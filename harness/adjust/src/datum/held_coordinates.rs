@@ -2,11 +2,14 @@
 
 use nalgebra::{DMatrix, Point3, SymmetricEigen, Vector3};
 
-use super::similarity::{COUNT, NAMES, Similarity};
+use super::similarity::{COUNT, NAMES, Similarity, free};
 use crate::network::{Attitude, Centre, Datum, Network, NetworkError, Status};
 
 /// Share of the largest below which a singular value is none.
 const NONE: f64 = 1e-9;
+
+/// Place among seven that stand in for inner constraints of the one that holds the scale.
+const SCALE: usize = 5;
 
 /// Coordinates (point, axis) that are held while the network is solved.
 pub(crate) type Held = Vec<(usize, usize)>;
@@ -19,19 +22,29 @@ pub(crate) fn hold(network: &Network, datum: &Datum) -> Result<Held, NetworkErro
             let held = horizontal.iter().flat_map(|&point| [(point, 0), (point, 1)]);
             Ok(held.chain(vertical.iter().map(|&point| (point, 2))).collect())
         }
-        Datum::Inner => {
-            if !rows(network, &[]).is_empty() {
+        Datum::Inner | Datum::InnerOver(_) => {
+            if !known(network, &[]).is_empty() {
                 return Err(NetworkError::Datum("inner constraints need a network of which nothing else fixes the frame".into()));
             }
-            let points: Vec<(usize, Point3<f64>)> = free_points(network).collect();
-            stand_in(&points).ok_or_else(|| NetworkError::Datum("inner constraints need three free points that are not on a line".into()))
+            let points: Vec<(usize, Point3<f64>)> = free_points(network, datum).map(|i| (i, network.points[i].position)).collect();
+            let mut held = stand_in(&points)
+                .ok_or_else(|| NetworkError::Datum("inner constraints need three free points that are not on a line".into()))?;
+            if free(network) < COUNT {
+                held.remove(SCALE);
+            }
+            Ok(held)
         }
     }
 }
 
-fn free_points(network: &Network) -> impl Iterator<Item = (usize, Point3<f64>)> {
-    let is_free = |point: &crate::network::ObjectPoint| point.coordinates == [Status::Free; 3];
-    network.points.iter().enumerate().filter(move |(_, point)| is_free(point)).map(|(i, point)| (i, point.position))
+/// The free points that inner constraints look at, without those that no image measured.
+fn free_points(network: &Network, datum: &Datum) -> impl Iterator<Item = usize> {
+    let mut takes_part = vec![!matches!(datum, Datum::InnerOver(_)); network.points.len()];
+    if let Datum::InnerOver(points) = datum {
+        points.iter().for_each(|&point| takes_part[point] = true);
+    }
+    let is_free = |i: usize| network.points[i].coordinates == [Status::Free; 3];
+    (0..network.points.len()).filter(move |&i| takes_part[i] && is_free(i))
 }
 
 /// Seven coordinates of three points far from each other.
@@ -47,13 +60,27 @@ fn stand_in(points: &[(usize, Point3<f64>)]) -> Option<Held> {
     if across < 1e-6 * length {
         return None;
     }
-    // The second point holds all its coordinates (two rotations, scale), the third the one that the rotation about their line moves most.
-    let axis = (at_c - at_a).cross(&along).iamax();
-    Some((0..3).map(|axis| (a, axis)).chain((0..3).map(|axis| (b, axis))).chain([(c, axis)]).collect())
+    // The second point holds all its coordinates (two rotations; that along the line, at `SCALE`, the scale), the third the one that the rotation about
+    // their line moves most.
+    let (lengthwise, axis) = (along.iamax(), (at_c - at_a).cross(&along).iamax());
+    let second = (0..3).filter(|&axis| axis != lengthwise).map(|axis| (b, axis));
+    Some((0..3).map(|axis| (a, axis)).chain(second).chain([(b, lengthwise), (c, axis)]).collect())
 }
 
-/// Every coordinate or orientation that is fixed, observed or held, as what the seven generators do to it.
+/// Every coordinate or orientation that is fixed, observed or held, and every distance, as what the seven generators do to it.
 fn rows(network: &Network, held: &[(usize, usize)]) -> Vec<[f64; COUNT]> {
+    let mut rows = known(network, held);
+    let similarity = Similarity::about(network.points.iter().map(|point| &point.position));
+    rows.extend(network.distances.iter().map(|distance| {
+        let [from, to] = distance.points.map(|point| network.points[point].position);
+        let (along, [at_from, at_to]) = ((to - from).normalize(), [from, to].map(|point| similarity.of_point(&point)));
+        std::array::from_fn(|k| (0..3).map(|axis| along[axis] * (at_to[k][axis] - at_from[k][axis])).sum())
+    }));
+    rows
+}
+
+/// The same without the distances.
+fn known(network: &Network, held: &[(usize, usize)]) -> Vec<[f64; COUNT]> {
     let measured = measured(network);
     let known: Vec<(usize, usize)> = (0..network.points.len())
         .filter(|&point| measured[point])
@@ -105,10 +132,10 @@ pub(crate) fn constraints(
         Datum::Minimal { .. } => {
             hold(network, datum).unwrap_or_default().into_iter().map(|(point, axis)| vec![(point, axis, 1.0)]).collect()
         }
-        Datum::Inner => (0..COUNT)
+        Datum::Inner | Datum::InnerOver(_) => (0..free(network))
             .map(|k| {
                 let of = |i: usize| similarity.of_point(&points[i])[k];
-                free_points(network).flat_map(|(i, _)| (0..3).map(move |axis| (i, axis, of(i)[axis]))).collect()
+                free_points(network, datum).flat_map(|i| (0..3).map(move |axis| (i, axis, of(i)[axis]))).collect()
             })
             .collect(),
     }

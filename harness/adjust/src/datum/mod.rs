@@ -5,5 +5,5 @@ mod similarity;
 mod transform;
 
 pub(crate) use held_coordinates::{hold, undetermined};
-pub(crate) use similarity::COUNT;
+pub(crate) use similarity::free;
 pub(crate) use transform::{STransformation, transformed};

@@ -3,8 +3,15 @@
 use calibench_model::Pose;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
+use crate::network::Network;
+
 /// Shifts along X, Y, Z, rotations about them, scale.
-pub(crate) const COUNT: usize = 7;
+pub(super) const COUNT: usize = 7;
+
+/// How many of them the observations leave to the datum: distances give the scale, the last.
+pub(crate) fn free(network: &Network) -> usize {
+    COUNT - usize::from(!network.distances.is_empty())
+}
 
 /// Names of the generators.
 pub(super) const NAMES: [&str; COUNT] =
@@ -47,9 +54,9 @@ impl Similarity {
         })
     }
 
-    /// The similarity with these amounts.
+    /// The similarity with these amounts, of the first generators or of all.
     pub(crate) fn with(&self, amounts: &[f64]) -> Motion {
-        let a = |k: usize| amounts[k];
+        let a = |k: usize| amounts.get(k).copied().unwrap_or_default();
         let turn = Rotation3::new(Vector3::new(a(3), a(4), a(5)) / self.length);
         Motion { centre: self.centre, shift: Vector3::new(a(0), a(1), a(2)), turn: *turn.matrix(), scale: 1.0 + a(6) / self.length }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::held_coordinates::constraints;
-use super::similarity::{COUNT, Similarity};
+use super::similarity::{Similarity, free};
 use crate::network::{Datum, Network};
 use crate::state::State;
 use crate::state::Step;
@@ -23,7 +23,7 @@ pub(crate) fn transformed(network: &Network, datum: &Datum, state: &State) -> Op
                 form.iter().map(|&(point, axis, factor)| factor * (network.points[point].position[axis] - state.points[point][axis])).sum()
             }),
         );
-        let amounts = slope(&forms, &similarity, &state).lu().solve(&right)?;
+        let amounts = slope(network, &forms, &similarity, &state).lu().solve(&right)?;
         let motion = similarity.with(amounts.as_slice());
         state.points.iter_mut().for_each(|point| *point = motion.point(point));
         state.poses.iter_mut().for_each(|pose| *pose = motion.pose(pose));
@@ -39,12 +39,12 @@ pub(crate) fn transformed(network: &Network, datum: &Datum, state: &State) -> Op
 }
 
 /// d(constraint) / d(generator).
-fn slope(forms: &[Vec<(usize, usize, f64)>], similarity: &Similarity, state: &State) -> DMatrix<f64> {
-    let mut slope = DMatrix::zeros(forms.len(), COUNT);
+fn slope(network: &Network, forms: &[Vec<(usize, usize, f64)>], similarity: &Similarity, state: &State) -> DMatrix<f64> {
+    let mut slope = DMatrix::zeros(forms.len(), free(network));
     for (row, form) in forms.iter().enumerate() {
         for &(point, axis, factor) in form {
             let changes = similarity.of_point(&state.points[point]);
-            (0..COUNT).for_each(|k| slope[(row, k)] += factor * changes[k][axis]);
+            (0..slope.ncols()).for_each(|k| slope[(row, k)] += factor * changes[k][axis]);
         }
     }
     slope
@@ -64,7 +64,7 @@ impl STransformation {
     pub(crate) fn to(network: &Network, datum: &Datum, state: &State, zero: &Step) -> Option<Self> {
         let similarity = Similarity::about(state.points.iter());
         let forms = constraints(network, datum, &similarity, &state.points);
-        let back = slope(&forms, &similarity, state).try_inverse()?;
+        let back = slope(network, &forms, &similarity, state).try_inverse()?;
         let step = |form: &Vec<(usize, usize, f64)>| {
             let mut step = zero.clone();
             form.iter().for_each(|&(point, axis, factor)| step.points[point][axis] += factor);
@@ -73,15 +73,15 @@ impl STransformation {
         Some(Self { similarity, constraints: forms.iter().map(step).collect(), back })
     }
 
-    /// `G (B^T G)^-1` at a point: 3 x 7.
+    /// `G (B^T G)^-1` at a point: 3 x 7, or 3 x 6 where distances give the scale.
     pub(crate) fn of_point(&self, state: &State, point: usize) -> DMatrix<f64> {
         let changes = self.similarity.of_point(&state.points[point]);
-        DMatrix::from_fn(3, COUNT, |i, k| changes[k][i]) * &self.back
+        DMatrix::from_fn(3, self.back.nrows(), |i, k| changes[k][i]) * &self.back
     }
 
-    /// `G (B^T G)^-1` at a pose: 6 x 7.
+    /// `G (B^T G)^-1` at a pose: 6 x 7, or 6 x 6.
     pub(crate) fn of_pose(&self, state: &State, image: usize) -> DMatrix<f64> {
         let changes = self.similarity.of_pose(&state.poses[image]);
-        DMatrix::from_fn(6, COUNT, |i, k| changes[k][i]) * &self.back
+        DMatrix::from_fn(6, self.back.nrows(), |i, k| changes[k][i]) * &self.back
     }
 }

@@ -25,6 +25,7 @@ impl Network {
         })?;
         self.check_surfaces()?;
         self.check_observations()?;
+        self.check_distances()?;
         self.check_datum()
     }
 
@@ -48,7 +49,13 @@ impl Network {
     }
 
     fn check_datum(&self) -> Result<(), NetworkError> {
+        if let Datum::InnerOver(points) = &self.datum {
+            points.iter().try_for_each(|&index| within(|| "the datum".into(), "point", index, self.points.len()))?;
+        }
         if let Datum::Minimal { horizontal, vertical } = &self.datum {
+            if !self.distances.is_empty() {
+                return Err(NetworkError::Datum("seven coordinates that are held fix the scale, and so do the distances".into()));
+            }
             for &index in horizontal.iter().chain(vertical) {
                 within(|| "the datum".into(), "point", index, self.points.len())?;
             }
@@ -69,7 +76,7 @@ pub(super) fn finite(of: impl Fn() -> String, values: impl IntoIterator<Item = f
     if all { Ok(()) } else { Err(NetworkError::NotANumber { of: of(), what: "a number is not finite" }) }
 }
 
-fn positive(of: impl Fn() -> String, sigmas: impl IntoIterator<Item = f64>) -> Result<(), NetworkError> {
+pub(super) fn positive(of: impl Fn() -> String, sigmas: impl IntoIterator<Item = f64>) -> Result<(), NetworkError> {
     let all = sigmas.into_iter().all(|sigma| sigma > 0.0 && (1.0 / (sigma * sigma)).is_normal());
     if all { Ok(()) } else { Err(NetworkError::NotANumber { of: of(), what: "a standard deviation is not a positive number" }) }
 }

@@ -74,6 +74,10 @@ pub(crate) struct Layout {
     pub(crate) triples: Triples,
     /// Of each triple: which of its numbers are unknowns.
     pub(crate) triple_free: Vec<[bool; 3]>,
+    /// Ends of each distance.
+    pub(crate) distances: Vec<[usize; 2]>,
+    /// Unknown points that a distance joins to another one, sorted.
+    pub(crate) joined: Vec<usize>,
     has_unknown_points: bool,
     /// Whether what couples points with cameras and poses is kept for all sights, and not made anew for some points at a time.
     pub(crate) keeps_couplings: bool,
@@ -99,6 +103,11 @@ impl Layout {
             }
             triple_free[point][axis] = false;
         }
+        let distances: Vec<[usize; 2]> = network.distances.iter().map(|distance| distance.points).collect();
+        let is_joint = |ends: &&[usize; 2]| ends.iter().all(|&end| triple_free[end] != [false; 3]);
+        let mut joined: Vec<usize> = distances.iter().filter(is_joint).flatten().copied().collect();
+        joined.sort_unstable();
+        joined.dedup();
         let (cameras, width) = cameras(network);
         let pose_free =
             network.images.iter().map(|image| [image.attitude != Attitude::Fixed, image.centre != Centre::Fixed]).collect::<Vec<_>>();
@@ -115,6 +124,8 @@ impl Layout {
             has_unknown_points: triple_free[..network.points.len()].iter().any(|free| *free != [false; 3]),
             triples,
             triple_free,
+            distances,
+            joined,
             keeps_couplings: true,
             pairs: Vec::new(),
             pair_start: vec![0],

@@ -2,6 +2,7 @@
 
 mod check;
 mod counts;
+mod distance;
 mod error;
 mod layout;
 mod status;
@@ -12,6 +13,7 @@ use calibench_model::{Covariance, PixelPoint, Pose};
 use nalgebra::Point3;
 
 pub use counts::Counts;
+pub use distance::DistanceObservation;
 pub use error::NetworkError;
 pub(crate) use layout::{CameraPlace, Layout, Sight};
 pub use status::{Attitude, Centre, Status};
@@ -29,6 +31,8 @@ pub struct Network {
     pub points: Vec<ObjectPoint>,
     /// Image coordinates.
     pub observations: Vec<ImageObservation>,
+    /// Observed distances between object points; none as a rule.
+    pub distances: Vec<DistanceObservation>,
     /// What fixes the frame of the object beside what is known of points and images.
     pub datum: Datum,
     /// Shapes that move control points; none as a rule.
@@ -131,11 +135,13 @@ pub enum Datum {
         /// Indices of the points whose Z is held.
         vertical: [usize; 3],
     },
-    /// Inner constraints over all object points: those seven that leave the points, together, closest to their start values, with the smallest trace
-    /// of their covariance (free network).
+    /// Inner constraints over all object points: those seven (six where distances give the scale) that leave the points, together, closest to their
+    /// start values, with the smallest trace of their covariance (free network).
     ///
     /// Source: Meissl 1965; Baarda 1973.
     Inner,
+    /// The same over some of the points, by their indices: these alone stay closest to their start values.
+    InnerOver(Vec<usize>),
 }
 
 impl Interior {

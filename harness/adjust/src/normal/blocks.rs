@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Matrix3;
 
+use super::distances;
 use super::image_equations::{Lost, Residual, Setting, View};
 use super::observed_unknowns;
 use super::projection::{Optics, POSE};
@@ -26,6 +27,8 @@ pub(crate) struct Normals {
     /// Of each triple.
     pub(crate) point: Vec<[f64; 9]>,
     pub(crate) point_right: Vec<[f64; 3]>,
+    /// Of each distance: 3 x 3 of its ends.
+    pub(crate) point_point: Vec<[f64; 9]>,
     /// Of each pair of a triple and a camera: 3 x n, one after the other.
     pub(crate) point_camera: Vec<f64>,
     /// Of each sight: 3 x 6.
@@ -79,6 +82,7 @@ pub(crate) fn linearise(
         }
     }
     observed_unknowns::add(network, layout, state, into);
+    distances::add(network, layout, state, into);
     into.hold(layout);
     Ok(())
 }

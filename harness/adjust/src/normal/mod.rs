@@ -1,6 +1,7 @@
 //! Normal equations by blocks: cameras, exterior orientations, object points, and what couples them.
 
 mod blocks;
+mod distances;
 mod gram;
 mod image_equations;
 mod observed_unknowns;
@@ -11,5 +12,6 @@ mod robust;
 mod tests;
 
 pub(crate) use blocks::{Normals, Rows, Scratch, linearise, residuals};
+pub(crate) use distances::Stretch;
 pub(crate) use image_equations::Lost;
 pub(crate) use robust::Loss;

@@ -7,9 +7,11 @@ use crate::AdjustError;
 use crate::datum::STransformation;
 use crate::network::Datum;
 use crate::solution::Solution;
-use crate::solve::{Coupling, Eliminated, Inverse};
+use crate::solve::{Coupling, Eliminated, Inverse, Kept};
 use crate::state::Step;
 
+/// The datum asked for is none.
+pub(super) const NO_FRAME: AdjustError = AdjustError::NotAvailable("the datum does not fix the frame");
 const NO_REDUNDANCY: AdjustError = AdjustError::NotAvailable("without redundancy no variance can be estimated");
 
 /// The variance factor that covariances are scaled with.
@@ -224,11 +226,11 @@ impl Solution<'_> {
         let (layout, plan) = (&self.engine.layout, &self.engine.plan);
         let mut poses = vec![Matrix6::zeros(); layout.pose_free.len()];
         let mut points = vec![Matrix3::zeros(); layout.triple_free.len()];
-        for (kept, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+        for (kept, block) in plan.others() {
             let values = inverse.block(plan, block, block);
-            match plan.eliminated {
-                Eliminated::Poses => points[kept] = Matrix3::from_row_slice(&values),
-                Eliminated::Points => poses[kept] = Matrix6::from_row_slice(&values),
+            match kept {
+                Kept::Point(point) => points[point] = Matrix3::from_row_slice(&values),
+                Kept::Pose(image) => poses[image] = Matrix6::from_row_slice(&values),
             }
         }
         for (&member, own) in plan.members.iter().zip(of_members.chunks_exact(plan.depth() * plan.depth())) {
@@ -250,8 +252,7 @@ impl Solution<'_> {
     /// Takes cofactors over into the datum of the solution: `S Q S^T`, block by block.
     fn transform(&self, poses: &mut [Matrix6<f64>], points: &mut [Matrix3<f64>]) -> Result<(), AdjustError> {
         let (engine, state) = (&self.engine, &self.end.state);
-        let refused = AdjustError::NotAvailable("the datum does not fix the frame");
-        let s = STransformation::to(engine.network, &self.datum, state, &engine.zero_step()).ok_or(refused)?;
+        let s = STransformation::to(engine.network, &self.datum, state, &engine.zero_step()).ok_or(NO_FRAME)?;
         // Q B, and B^T Q B.
         let answers: Vec<Step> = s
             .constraints

@@ -3,6 +3,7 @@
 mod covariance;
 mod frame_uncertainty;
 mod image_information;
+mod lengths;
 mod projection_uncertainty;
 mod reliability;
 mod residuals;
@@ -13,6 +14,7 @@ mod snooping;
 pub use covariance::{Correlation, Covariances, Variance};
 pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty, frame_weight};
 pub use image_information::image_information;
+pub use lengths::Length;
 pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub use residuals::{Residual, Use};

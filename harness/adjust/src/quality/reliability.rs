@@ -6,7 +6,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::AdjustError;
 use crate::network::{Attitude, Centre, Sight, Status};
-use crate::normal::{Lost, Rows, Scratch};
+use crate::normal::{Lost, Rows, Scratch, Stretch};
 use crate::solution::Solution;
 use crate::solve::{Coupling, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
@@ -99,7 +99,7 @@ impl Solution<'_> {
         let inverse = self.engine.inverse(&self.solved);
         let of_members = self.image_points(&inverse, scale, &mut found.points)?;
         if self.counts().observed > 0 {
-            found.observed = self.observed(&self.cofactors(&inverse, &of_members)?, scale);
+            found.observed = self.observed(&inverse, &self.cofactors(&inverse, &of_members)?, scale);
         }
         Ok(found)
     }
@@ -113,7 +113,7 @@ impl Solution<'_> {
         let inverse = self.engine.inverse(&self.solved);
         let of_members = self.image_points(&inverse, scale, &mut found.points)?;
         let cofactors = self.cofactors(&inverse, &of_members)?;
-        found.observed = self.observed(&cofactors, scale);
+        found.observed = self.observed(&inverse, &cofactors, scale);
         Ok((cofactors.scaled(variance_factor), found))
     }
 
@@ -206,12 +206,13 @@ impl Solution<'_> {
         let camera = layout.camera_of[sight.image()];
         let width = layout.cameras[camera].free.len();
         let (of_pose, of_point) = (&row[width..width + 6], &row[width + 6..]);
-        let (own, other, kept) = match plan.eliminated {
-            Eliminated::Points => (of_point, of_pose, plan.block_of[sight.image()]),
-            Eliminated::Poses => (of_pose, of_point, plan.block_of[layout.triples.of_point(sight.point())]),
-        };
+        let own = if plan.eliminated == Eliminated::Points { of_point } else { of_pose };
+        let point = layout.triples.of_point(sight.point());
         let parts: Vec<(usize, &[[f64; 2]])> =
-            [(camera, &row[..width]), (kept, other)].into_iter().filter(|(block, part)| *block != usize::MAX && !part.is_empty()).collect();
+            [(camera, &row[..width]), (plan.pose_block[sight.image()], of_pose), (plan.point_block[point], of_point)]
+                .into_iter()
+                .filter(|(block, part)| *block != usize::MAX && !part.is_empty())
+                .collect();
         let mut sum = Matrix2::zeros();
         for (i, &(a, left)) in parts.iter().enumerate() {
             sum += inverse.between(plan, (a, left), (a, left));
@@ -257,7 +258,7 @@ impl Solution<'_> {
         }
     }
 
-    fn observed(&self, cofactors: &Covariances, scale: [f64; 2]) -> Vec<ObservedReliability> {
+    fn observed(&self, inverse: &Inverse, cofactors: &Covariances, scale: [f64; 2]) -> Vec<ObservedReliability> {
         let (network, state) = (self.engine.network, &self.end.state);
         let mut found = Vec::new();
         let mut add = |what: String, v: f64, sigma: f64, cofactor: f64| found.push(observed(what, v, sigma, cofactor, scale));
@@ -300,6 +301,10 @@ impl Solution<'_> {
                     add(what, values[k] - value, sigma, cofactors.surfaces[i][(k, k)]);
                 }
             }
+        }
+        for (index, distance) in network.distances.iter().enumerate() {
+            let stretch = Stretch::of(&self.engine.layout, state, distance);
+            add(network.name_of_distance(distance), stretch.length - distance.value, distance.sigma, self.of_distance(inverse, index, &stretch));
         }
         found
     }

@@ -31,6 +31,15 @@ pub(crate) enum Source {
     Surface(usize),
 }
 
+/// What a kept block beyond those of the cameras holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// The exterior orientation of an image.
+    Pose(usize),
+    /// A triple: a point, or the coefficients of a surface.
+    Point(usize),
+}
+
 /// A kept block that an eliminated one is coupled with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coupled {
@@ -57,8 +66,12 @@ pub(crate) struct Plan {
     pub(crate) members: Vec<usize>,
     /// First unknown of each kept block, and of none at the end.
     pub(crate) kept: Vec<usize>,
-    /// The kept block of each point or image that is kept, or `usize::MAX`.
-    pub(crate) block_of: Vec<usize>,
+    /// The kept block of each image, or `usize::MAX`.
+    pub(crate) pose_block: Vec<usize>,
+    /// The kept block of each triple, or `usize::MAX`.
+    pub(crate) point_block: Vec<usize>,
+    /// What each kept block beyond those of the cameras holds, in their order.
+    others: Vec<Kept>,
 }
 
 impl Plan {
@@ -66,19 +79,47 @@ impl Plan {
         let points = (0..layout.triple_free.len()).filter(|&i| layout.is_triple_unknown(i)).collect::<Vec<_>>();
         let poses = (0..layout.pose_free.len()).filter(|&i| layout.is_pose_unknown(i)).collect::<Vec<_>>();
         // All images see a surface: eliminated, it would couple each with each.
-        let (eliminated, members, others, size, count) = if 6 * poses.len() > 3 * points.len() || layout.triples.surfaces > 0 {
-            (Eliminated::Poses, poses, points, 3, layout.triple_free.len())
+        let is_of_boards = 6 * poses.len() > 3 * points.len() || layout.triples.surfaces > 0;
+        let (eliminated, members, others): (_, _, Vec<Kept>) = if is_of_boards {
+            (Eliminated::Poses, poses, points.into_iter().map(Kept::Point).collect())
         } else {
-            (Eliminated::Points, points, poses, 6, layout.pose_free.len())
+            // Members are coupled with what is kept alone: the ends of a distance are.
+            let (joined, members): (Vec<usize>, _) = points.into_iter().partition(|point| layout.joined.binary_search(point).is_ok());
+            let poses = poses.into_iter().map(Kept::Pose);
+            (Eliminated::Points, members, poses.chain(joined.into_iter().map(Kept::Point)).collect())
         };
         let mut kept: Vec<usize> = layout.cameras.iter().map(|camera| camera.offset).collect();
-        let mut block_of = vec![usize::MAX; count];
-        for (i, other) in others.into_iter().enumerate() {
-            block_of[other] = layout.cameras.len() + i;
-            kept.push(layout.width + i * size);
+        let (mut pose_block, mut point_block) = (vec![usize::MAX; layout.pose_free.len()], vec![usize::MAX; layout.triple_free.len()]);
+        let mut end = layout.width;
+        for other in &others {
+            let block = kept.len();
+            kept.push(end);
+            match *other {
+                Kept::Pose(image) => (pose_block[image], end) = (block, end + 6),
+                Kept::Point(point) => (point_block[point], end) = (block, end + 3),
+            }
         }
-        kept.push(layout.width + (kept.len() - layout.cameras.len()) * size);
-        Self { eliminated, members, kept, block_of }
+        kept.push(end);
+        Self { eliminated, members, kept, pose_block, point_block, others }
+    }
+
+    /// Kept blocks beyond those of the cameras: what each holds, and its place among all.
+    pub(crate) fn others(&self) -> impl Iterator<Item = (Kept, usize)> + '_ {
+        let first = self.kept.len() - 1 - self.others.len();
+        self.others.iter().enumerate().map(move |(i, kept)| (*kept, first + i))
+    }
+
+    /// Sights of a kept point whose poses are kept too, with the pose's block.
+    pub(crate) fn kept_sights(&self, layout: &Layout, point: usize) -> impl Iterator<Item = (usize, usize)> {
+        let sights = if self.eliminated == Eliminated::Points { Some(layout.of_triple(point)) } else { None };
+        let block = |sight: usize| (sight, self.pose_block[layout.sights[sight].image()]);
+        sights.into_iter().flatten().map(block).filter(|(_, block)| *block != usize::MAX)
+    }
+
+    /// The blocks of two points that a distance joins, the lower one in the matrix first; `None` if one of them is known.
+    pub(crate) fn joint(&self, ends: [usize; 2]) -> Option<[usize; 2]> {
+        let [a, b] = ends.map(|point| self.point_block[point]);
+        (a != usize::MAX && b != usize::MAX).then(|| [a.max(b), a.min(b)])
     }
 
     /// What a member is coupled with, sorted by offset: found where it is needed, since all lists together are longer than the observations.
@@ -94,10 +135,10 @@ impl Plan {
             Eliminated::Poses => {
                 push(Source::PoseCamera(member), layout.camera_of[member]);
                 for sight in layout.of_image[member].clone() {
-                    push(Source::Sight(sight), self.block_of[layout.sights[sight].point()]);
+                    push(Source::Sight(sight), self.point_block[layout.sights[sight].point()]);
                 }
                 for (surface, triple) in layout.triples.of_surfaces().enumerate() {
-                    push(Source::Surface(member * layout.triples.surfaces + surface), self.block_of[triple]);
+                    push(Source::Surface(member * layout.triples.surfaces + surface), self.point_block[triple]);
                 }
             }
             Eliminated::Points => {
@@ -105,7 +146,7 @@ impl Plan {
                     push(Source::PointCamera(pair.offset), pair.camera);
                 }
                 for sight in layout.of_triple(member) {
-                    push(Source::Sight(sight), self.block_of[layout.sights[sight].image()]);
+                    push(Source::Sight(sight), self.pose_block[layout.sights[sight].image()]);
                 }
             }
         }
@@ -139,14 +180,16 @@ impl Plan {
                 columns[column.block].add(coupled[i..].iter().map(|row| row.block));
             }
         }
-        for (kept, &block) in self.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
-            match self.eliminated {
-                Eliminated::Points => columns[layout.camera_of[kept]].add(std::iter::once(block)),
-                Eliminated::Poses => {
-                    layout.pairs[layout.pairs_of(kept)].iter().for_each(|pair| columns[pair.camera].add(std::iter::once(block)));
+        for (kept, block) in self.others() {
+            match kept {
+                Kept::Pose(image) => columns[layout.camera_of[image]].add(std::iter::once(block)),
+                Kept::Point(point) => {
+                    layout.pairs[layout.pairs_of(point)].iter().for_each(|pair| columns[pair.camera].add(std::iter::once(block)));
+                    self.kept_sights(layout, point).for_each(|(_, pose)| columns[pose].add(std::iter::once(block)));
                 }
             }
         }
+        layout.distances.iter().filter_map(|ends| self.joint(*ends)).for_each(|[low, high]| columns[high].add(std::iter::once(low)));
         columns.into_iter().map(Column::rows).collect()
     }
 }

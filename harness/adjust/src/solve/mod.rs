@@ -20,7 +20,7 @@ use crate::descent::{Damping, Descended, descend};
 use crate::network::{ImageObservation, Layout, Network, Sight};
 use crate::normal::{Loss, Lost, Normals, Scratch, linearise};
 use crate::state::{State, Step};
-pub(crate) use elimination_order::{Eliminated, Ordered, Plan};
+pub(crate) use elimination_order::{Eliminated, Kept, Ordered, Plan};
 use factor::Factor;
 pub(crate) use inverse::{Inverse, Member};
 use place::Place;
@@ -123,12 +123,12 @@ impl<'n> Engine<'n> {
             let width = place.free.len();
             (0..width).for_each(|i| scale[place.offset + i] = root(normals.camera[camera][i * (width + 1)]));
         }
-        for (kept, &block) in self.plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+        for (kept, block) in self.plan.others() {
             let into = &mut scale[self.plan.kept[block]..self.plan.kept[block + 1]];
             into.iter_mut().enumerate().for_each(|(i, scale)| {
-                *scale = root(match self.plan.eliminated {
-                    Eliminated::Poses => normals.point[kept][4 * i],
-                    Eliminated::Points => normals.pose[kept][7 * i],
+                *scale = root(match kept {
+                    Kept::Point(point) => normals.point[point][4 * i],
+                    Kept::Pose(image) => normals.pose[image][7 * i],
                 });
             });
         }

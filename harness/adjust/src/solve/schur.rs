@@ -4,13 +4,11 @@
 //! `x_e = L^-T (L^-1 g_e - Y x_k)`. `Y` is as large as all coupling blocks together: it is made anew where it is needed, member by member.
 
 use super::Engine;
-use super::elimination_order::{Coupled, Eliminated, Ordered, Plan};
+use super::elimination_order::{Coupled, Eliminated, Kept, Ordered};
 use super::kernel::{Run, runs, subtract_3, subtract_6};
 use super::reduced::Reduced;
 use super::small_cholesky::{backward, cholesky, forward};
 use super::window::Window;
-use crate::network::Layout;
-use crate::normal::Normals;
 use crate::state::Step;
 
 /// What the elimination leaves for the way back. `D` unknowns of each eliminated block.
@@ -42,15 +40,15 @@ impl Schur {
     /// Eliminates; diagonals are raised by the share `damping`.
     pub(crate) fn eliminate(&mut self, of: Ordered, damping: f64, into: &mut Reduced) -> Result<(), Loose> {
         let Ordered { engine: Engine { plan, layout, .. }, normals, .. } = of;
-        keep(plan, layout, normals, damping, into);
+        keep(of, damping, into);
         self.reduced.clear();
         self.reduced.resize(plan.size(), 0.0);
         self.reduced[..layout.width].copy_from_slice(&normals.camera_right);
-        for (kept, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+        for (kept, block) in plan.others() {
             let into = &mut self.reduced[plan.kept[block]..plan.kept[block + 1]];
-            match plan.eliminated {
-                Eliminated::Poses => into.copy_from_slice(&normals.point_right[kept]),
-                Eliminated::Points => into.copy_from_slice(&normals.pose_right[kept]),
+            match kept {
+                Kept::Point(point) => into.copy_from_slice(&normals.point_right[point]),
+                Kept::Pose(image) => into.copy_from_slice(&normals.pose_right[image]),
             }
         }
         self.factors.clear();
@@ -118,11 +116,11 @@ impl Schur {
     fn back_with(&self, of: Ordered, kept: &[f64], right: &[f64], step: &mut Step) {
         let Engine { plan, layout, .. } = of.engine;
         step.cameras.copy_from_slice(&kept[..layout.width]);
-        for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+        for (held, block) in plan.others() {
             let from = &kept[plan.kept[block]..plan.kept[block + 1]];
-            match plan.eliminated {
-                Eliminated::Poses => step.points[index].copy_from_slice(from),
-                Eliminated::Points => step.poses[index].copy_from_slice(from),
+            match held {
+                Kept::Point(point) => step.points[point].copy_from_slice(from),
+                Kept::Pose(image) => step.poses[image].copy_from_slice(from),
             }
         }
         let mut coupling = Coupling::default();
@@ -158,11 +156,11 @@ impl Schur {
         let (Engine { plan, layout, .. }, mut coupling) = (of.engine, Coupling::default());
         let (mut kept, mut rights) = (vec![0.0; plan.size()], Vec::with_capacity(plan.members.len() * plan.depth()));
         kept[..layout.width].copy_from_slice(&right.cameras);
-        for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+        for (held, block) in plan.others() {
             let into = &mut kept[plan.kept[block]..plan.kept[block + 1]];
-            match plan.eliminated {
-                Eliminated::Poses => into.copy_from_slice(&right.points[index]),
-                Eliminated::Points => into.copy_from_slice(&right.poses[index]),
+            match held {
+                Kept::Point(point) => into.copy_from_slice(&right.points[point]),
+                Kept::Pose(image) => into.copy_from_slice(&right.poses[image]),
             }
         }
         for (place, &member) in plan.members.iter().enumerate() {
@@ -236,36 +234,48 @@ impl Coupling {
 }
 
 /// The kept blocks, before anything is taken off.
-fn keep(plan: &Plan, layout: &Layout, normals: &Normals, damping: f64, into: &mut Reduced) {
+fn keep(of: Ordered, damping: f64, into: &mut Reduced) {
+    let Ordered { engine: Engine { plan, layout, .. }, normals, .. } = of;
     into.values.fill(0.0);
-    let mut put = |(row, column): (usize, usize), (height, width): (usize, usize), value: &dyn Fn(usize, usize) -> f64| {
+    let mut window = Window::default();
+    let mut add = |(row, column): (usize, usize), value: &dyn Fn(usize, usize) -> f64| {
         let (start, stride) = into.place((row, plan.kept[row]), (column, plan.kept[column]));
-        for j in 0..width {
-            for i in 0..height {
+        for j in 0..plan.width(column) {
+            for i in 0..plan.width(row) {
                 let raise = if row == column && i == j { 1.0 + damping } else { 1.0 };
-                into.values[start + j * stride + i] = value(i, j) * raise;
+                into.values[start + j * stride + i] += value(i, j) * raise;
             }
         }
     };
     for (camera, place) in layout.cameras.iter().enumerate() {
         let width = place.free.len();
-        put((camera, camera), (width, width), &|i, j| normals.camera[camera][i * width + j]);
+        add((camera, camera), &|i, j| normals.camera[camera][i * width + j]);
     }
-    for (kept, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
-        match plan.eliminated {
-            Eliminated::Poses => {
-                put((block, block), (3, 3), &|i, j| normals.point[kept][3 * i + j]);
-                for pair in &layout.pairs[layout.pairs_of(kept)] {
-                    let width = layout.cameras[pair.camera].free.len();
-                    put((block, pair.camera), (3, width), &|i, j| normals.point_camera[pair.offset + i * width + j]);
+    for (kept, block) in plan.others() {
+        match kept {
+            Kept::Point(point) => {
+                add((block, block), &|i, j| normals.point[point][3 * i + j]);
+                window.hold(of, point);
+                for pair in &layout.pairs[layout.pairs_of(point)] {
+                    let (width, coupling) = (layout.cameras[pair.camera].free.len(), window.camera(of, pair.offset));
+                    add((block, pair.camera), &|i, j| coupling[i * width + j]);
+                }
+                for (sight, pose) in plan.kept_sights(layout, point) {
+                    let coupling = window.pose(of, sight);
+                    add((block, pose), &|i, j| coupling[6 * i + j]);
                 }
             }
-            Eliminated::Points => {
-                put((block, block), (6, 6), &|i, j| normals.pose[kept][6 * i + j]);
-                let camera = layout.camera_of[kept];
+            Kept::Pose(image) => {
+                add((block, block), &|i, j| normals.pose[image][6 * i + j]);
+                let camera = layout.camera_of[image];
                 let width = layout.cameras[camera].free.len();
-                put((block, camera), (6, width), &|i, j| normals.pose_camera[kept][i * width + j]);
+                add((block, camera), &|i, j| normals.pose_camera[image][i * width + j]);
             }
         }
+    }
+    for (ends, coupling) in layout.distances.iter().zip(&normals.point_point) {
+        let Some([low, high]) = plan.joint(*ends) else { continue };
+        let is_turned = plan.point_block[ends[0]] == high;
+        add((low, high), &|i, j| if is_turned { coupling[3 * j + i] } else { coupling[3 * i + j] });
     }
 }

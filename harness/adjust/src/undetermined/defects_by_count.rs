@@ -26,9 +26,11 @@ pub(crate) fn counted(network: &Network, layout: &Layout, held: &[(usize, usize)
 }
 
 fn points(network: &Network, layout: &Layout) -> Option<Defect> {
+    let mut distances = vec![0; layout.triple_free.len()];
+    layout.distances.iter().flatten().for_each(|&end| distances[end] += 1);
     let lacking = |&i: &usize| {
         let known = (0..3).filter(|&axis| !layout.triple_free[i][axis] || network.points[i].coordinates[axis] != Status::Free).count();
-        layout.is_triple_unknown(i) && 2 * layout.of_triple(i).len() + known < 3
+        layout.is_triple_unknown(i) && 2 * layout.of_triple(i).len() + known + distances[i] < 3
     };
     let points: Vec<_> =
         (0..network.points.len()).filter(lacking).map(|i| (network.points[i].name.clone(), layout.of_triple(i).len())).collect();

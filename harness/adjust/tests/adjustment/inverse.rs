@@ -60,6 +60,20 @@ fn board() -> Network {
     shaken(network, 4)
 }
 
+/// The same with distances between points from everywhere.
+fn bars(mut network: Network) -> Network {
+    let count = network.points.len();
+    let mut random = networks::random(9);
+    for k in 0..7 {
+        let points = [(k * 31) % count, (k * 67 + 11) % count];
+        let [from, to] = points.map(|point| network.points[point].position);
+        let (length, sigma) = ((to - from).norm(), 1e-2);
+        let value = length + sigma * networks::normal(&mut random);
+        network.distances.push(calibench_adjust::DistanceObservation { points, value, sigma });
+    }
+    network
+}
+
 fn close(found: f64, expected: f64, scale: f64) {
     assert!((found - expected).abs() <= 1e-9 * scale, "{found:e} is not {expected:e} by {scale:e}");
 }
@@ -86,7 +100,8 @@ fn blocks_are_those_of_the_whole_inverse() {
         network.datum = Datum::Minimal { horizontal: [1, 7], vertical: [3, 11, 21] };
         shaken(network, 5)
     };
-    for network in [cameras(), points_kept(), at_random(), board(), ring(), shaken(networks::vosselman_foerstner(), 6)] {
+    let of_bars = [bars(cameras()), bars(points_kept()), bars(at_random())];
+    for network in [cameras(), points_kept(), at_random(), board(), ring(), shaken(networks::vosselman_foerstner(), 6)].into_iter().chain(of_bars) {
         for huber in [None, Some(1.0)] {
             let solution = adjust(&network, &Options { huber, ..Options::default() }).unwrap_or_else(|error| panic!("{error}"));
             let full = solution.full_covariance(Variance::Apriori).unwrap();

@@ -3,6 +3,7 @@
 mod counts;
 mod crept;
 mod datum;
+mod distances;
 mod gross;
 mod inverse;
 mod networks;

@@ -34,9 +34,10 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     let Ok(free) = adjust(&network, &Options { most_iterations: NEAR, ..calibration.options() }) else {
         return Allowed::untested("without them the network is not determined");
     };
-    // Seven of all coordinates are the frame's, and a bend is a part of them.
+    // Seven of all coordinates are the frame's (six where distances give the scale), and a bend is a part of them.
+    let frame = 7 - usize::from(!whole.distances.is_empty());
     let bends = whole.surfaces.iter().flat_map(|surface| surface.statuses).filter(|status| status.is_unknown()).count();
-    calibration.adjusted(&free, 3 * network.points.len() - 7 - bends, || cause(&network, &free))
+    calibration.adjusted(&free, 3 * network.points.len() - frame - bends, || cause(&network, &free))
 }
 
 /// Every point free: where too few images see one, the network is not determined.

@@ -34,6 +34,7 @@ pub(super) fn found(calibration: &Calibration<'_>) -> (Vec<Doubt>, Vec<String>) 
         }
         found.extend(of_no_lens(calibration, camera).chain(of_a_crop(calibration, camera)));
     }
+    found.extend(calibration.doubted_distances());
     (found, rims)
 }
 

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use calibench_calibrate::{
     BoardShape, Calibration, CalibrationError, DatumChoice, Discs, GrossErrors, MOST_TRIED, Risk, Settings, Suspected, calibrate, prepare,
-    suspected,
+    prepare_free, suspected,
 };
 use calibench_cameras::inputs_of;
-use calibench_exchange::{PointFile, read_control, read_observed_stations};
+use calibench_exchange::{PointFile, read_control, read_distances, read_observed_stations};
 use calibench_files::{OutputFile, OutputFolder};
 use calibench_images::Reading;
 use calibench_model::boards::Board;
@@ -62,14 +62,23 @@ pub struct Calibrate {
     /// What (0, 0) is in the file of --points [default: centre]
     #[arg(long, value_enum, value_name = "ORIGIN", requires = "points")]
     origin: Option<Origin>,
-    /// Control points: CSV with target,X,Y,Z, and optionally sX,sY,sZ
-    #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
+    /// Control points: CSV with target,X,Y,Z, and optionally sX,sY,sZ; without them the network is free, and coordinates come from the images
+    #[arg(long, value_name = "CSV", conflicts_with = "photos")]
     control: Option<PathBuf>,
+    /// Coordinates near the true ones, of targets that are no control: CSV with target,X,Y,Z; start values of a free network
+    #[arg(long, value_name = "CSV", conflicts_with_all = ["photos", "control"])]
+    approx: Option<PathBuf>,
+    /// Measured distances between targets, as of scale bars: CSV with target_a,target_b,distance,sigma, in object units
+    #[arg(long, value_name = "CSV")]
+    distances: Option<PathBuf>,
+    /// The adjusted length between two targets with its standard deviation; may stand several times
+    #[arg(long, value_name = "TARGET,TARGET", value_parser = ends)]
+    length: Vec<[String; 2]>,
     #[command(flatten)]
     cameras: Cameras,
-    /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B,C,D,E (X and Y of two, Z of three)
-    #[arg(long, value_name = "DATUM", default_value = "control")]
-    datum: DatumChoice,
+    /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, free:A,B,C,... (these targets stay closest to their start values), or minimal:A,B,C,D,E (X and Y of two, Z of three) [default: control; without --control free]
+    #[arg(long, value_name = "DATUM")]
+    datum: Option<DatumChoice>,
     /// Shape of a board of control points: tested (bent where the points say so), flat, bent (a surface of second order), bent-axes (mrcal's two parameters), or free (every point, as with --datum free)
     #[arg(long, value_name = "SHAPE", default_value = "tested")]
     board_shape: BoardShape,
@@ -133,25 +142,27 @@ struct Input {
     /// How they were read.
     reading: Reading,
     control: Vec<ControlRow>,
+    /// Nothing of the object is known but start values, where `control` has them.
+    is_free: bool,
     /// What is in doubt of where a board was found.
     doubts: Vec<String>,
 }
 
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
+        let given = [&self.points, &self.control, &self.approx, &self.distances, &self.poses].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("calibrate", None))).transpose()?;
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, &inputs)).transpose()?;
         let outputs = Outputs { camera, scene, report };
-        let Input { points, lost, photos, reading, control, doubts } = self.input(context)?;
+        let Input { points, lost, photos, reading, control, is_free, doubts } = self.input(context)?;
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
         let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
         let settings = self.settings(&photos, self.eccentricity.or(of_discs.then_some(Discs::Control)))?;
         let sets = sets(&self.compare)?;
         // What the inputs may be in truth is asked of few enough points.
-        let given = (points.len() <= MOST_TRIED).then(|| points.clone());
+        let given = (points.len() <= MOST_TRIED && !is_free).then(|| points.clone());
         let suspects = |found: Result<&Calibration<'_>, &CalibrationError>| {
             given.as_ref().map_or_else(Vec::new, |points| suspected(points, &control, &settings, found))
         };
@@ -159,7 +170,8 @@ impl Calibrate {
             let lines = suspects(Err(&error)).iter().map(|found| format!("\nsuspected: {}", found.words())).collect::<String>();
             Failure::input(format!("{error}{lines}"))
         };
-        let mut prepared = prepare(points, &control, &settings).map_err(explained)?;
+        let prepared = if is_free { prepare_free(points, &control, &settings) } else { prepare(points, &control, &settings) };
+        let mut prepared = prepared.map_err(explained)?;
         prepared.unmeasured = lost;
         calibrate(&prepared, &sets, |calibration| {
             let in_doubt = !(calibration.doubts().is_empty() && doubts.is_empty());
@@ -174,8 +186,9 @@ impl Calibrate {
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
-        match (&self.points, &self.control, self.board.or(self.chessboard.map(Board::from))) {
-            (Some(points), Some(control), _) => {
+        let given = self.control.as_ref().or(self.approx.as_ref());
+        match (&self.points, given, self.board.or(self.chessboard.map(Board::from))) {
+            (Some(points), control, _) => {
                 self.read.without_photographs()?;
                 let PointFile { mut points, lost } = inputs::measured(points)?;
                 if let Some(Origin::Corner) = self.origin {
@@ -186,7 +199,8 @@ impl Calibrate {
                     lost,
                     photos: Vec::new(),
                     reading: Reading::default(),
-                    control: read_control(control)?,
+                    control: control.map_or(Ok(Vec::new()), |path| read_control(path))?,
+                    is_free: self.control.is_none(),
                     doubts: Vec::new(),
                 })
             }
@@ -195,9 +209,9 @@ impl Calibrate {
                 let (Corners { points, lost, photos, doubts }, reading) =
                     photographs::corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
-                Ok(Input { points, lost, photos, reading, control: finder.control(), doubts })
+                Ok(Input { points, lost, photos, reading, control: finder.control(), is_free: false, doubts })
             }
-            _ => Err(Failure::input("expected --points, --control and --size, or photographs and --board")),
+            _ => Err(Failure::input("expected --points and --size, with --control or --distances, or photographs and --board")),
         }
     }
 
@@ -208,7 +222,9 @@ impl Calibrate {
 
     fn settings(&self, photos: &[Photo], discs: Option<Discs>) -> Result<Settings, Failure> {
         Ok(Settings {
-            datum: self.datum.clone(),
+            datum: self.datum(),
+            distances: self.distances.as_deref().map(read_distances).transpose()?.unwrap_or_default(),
+            lengths: self.length.clone(),
             shape: self.board_shape,
             gross: self.gross(),
             sigma_px: self.sigma,
@@ -218,6 +234,12 @@ impl Calibrate {
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
             ..Settings::new(self.cameras.optics(photos)?)
         })
+    }
+
+    /// Without control there is no frame but that of the targets themselves.
+    fn datum(&self) -> DatumChoice {
+        let is_free = self.points.is_some() && self.control.is_none();
+        self.datum.clone().unwrap_or(if is_free { DatumChoice::Free } else { DatumChoice::Control })
     }
 
     fn gross(&self) -> GrossErrors {
@@ -254,6 +276,15 @@ impl Calibrate {
         camera?;
         scene?;
         Ok(report?)
+    }
+}
+
+/// Two targets from `A,B`.
+fn ends(text: &str) -> Result<[String; 2], String> {
+    let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
+    match <[String; 2]>::try_from(names) {
+        Ok(ends) if ends.iter().all(|name| !name.is_empty()) => Ok(ends),
+        _ => Err(format!("`{text}` is no pair of targets: expected two names with a comma, as in 506,507")),
     }
 }
 

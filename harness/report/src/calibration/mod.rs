@@ -7,6 +7,7 @@ mod digits;
 mod discs;
 mod figures;
 mod html;
+mod lengths;
 mod limits;
 mod next;
 mod page;

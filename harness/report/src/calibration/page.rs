@@ -14,7 +14,7 @@ use super::html;
 use super::next::NextSection;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, figures, images_of, sets_page, tables};
+use super::{board, checks, discs, figures, images_of, lengths, sets_page, tables};
 use crate::canvas::write_pictures;
 use crate::corners::Pictured;
 use crate::html::Figures;
@@ -70,7 +70,7 @@ fn facts_and_parameters(calibration: &Calibration<'_>) -> String {
 
 /// What comes below the warnings.
 fn rest(calibration: &Calibration<'_>, (pictures, distortion): (&[(String, String)], &[Option<Figure>]), next: &str) -> String {
-    let mut text = checks::section(calibration);
+    let mut text = lengths::section(calibration) + &checks::section(calibration);
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
     }
@@ -90,7 +90,7 @@ fn rest(calibration: &Calibration<'_>, (pictures, distortion): (&[(String, Strin
     text.push_str(
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
          targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), of a \
-         board `board.csv` (its bend); `uncertainty.csv` (the maps' numbers, px).\n",
+         board `board.csv` (its bend), of lengths `distances.csv`; `uncertainty.csv` (the maps' numbers, px).\n",
     );
     text
 }
@@ -108,6 +108,7 @@ pub fn summary(calibration: &Calibration<'_>) -> String {
             parameters(calibration, camera).render()
         );
     }
+    text.push_str(&lengths::section(calibration).replace("## Lengths", "lengths"));
     text.push_str(&warnings(calibration).iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n{}", sets_page::section(compared));

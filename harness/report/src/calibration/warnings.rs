@@ -119,5 +119,5 @@ fn weights(calibration: &Calibration<'_>) -> Option<String> {
     let sigma0 = calibration.solution.sigma0().filter(|sigma0| *sigma0 > 0.0 && !(0.67..=1.5).contains(sigma0))?;
     let sigma = settings.sigma();
     (weighted && settings.sigma_px.is_none())
-        .then(|| format!("control is weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
+        .then(|| format!("control or distances are weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
 }

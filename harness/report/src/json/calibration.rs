@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::compared::Set;
 use super::doubted::Doubted;
+use super::lengths::{Length, lengths};
 use super::next::NextAnswer;
 use super::{Answer, CameraAnswer};
 use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, warnings};
@@ -40,6 +41,8 @@ pub struct CalibrationAnswer {
     rms_px: f64,
     /// The cameras.
     cameras: Vec<CalibratedCamera>,
+    /// Distances that were measured, then lengths that were asked for.
+    lengths: Vec<Length>,
     /// Pairs of parameters whose correlation is beyond 0.9.
     correlated: Vec<Correlated>,
     /// What was looked for in the residuals.
@@ -254,6 +257,7 @@ impl CalibrationAnswer {
             sigma0: solution.sigma0(),
             rms_px: calibration.rms_px(),
             cameras: (0..calibration.cameras()).map(|index| camera(calibration, index, &tests)).collect::<Result<_, _>>()?,
+            lengths: lengths(calibration)?,
             correlated: pairs.iter().map(|found| Correlated { a: name(found.pair[0]), b: name(found.pair[1]), rho: found.rho }).collect(),
             checks: calibration.checked.iter().map(check).collect(),
             rivals: prepared.rivals.iter().map(|rival| self::rival(calibration, rival)).collect(),

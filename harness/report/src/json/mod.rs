@@ -7,6 +7,7 @@ mod conversion;
 mod difference;
 mod doubted;
 mod judgement;
+mod lengths;
 mod measurement;
 mod next;
 mod schema;
