@@ -11,5 +11,5 @@ mod robust;
 mod tests;
 
 pub(crate) use blocks::{Normals, Rows, Scratch, linearise, residuals};
-pub(crate) use image_equations::Lost;
+pub(crate) use image_equations::{Lost, Residual};
 pub(crate) use robust::Loss;

@@ -14,6 +14,7 @@ pub use covariance::{Correlation, Covariances, Variance};
 pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty, frame_weight};
 pub use image_information::image_information;
 pub use projection_uncertainty::Held;
+pub(crate) use reliability::{critical, image_point};
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub use residuals::{Residual, Use};
 pub use robust::{adjust_robustly, scale_of};
