@@ -97,6 +97,11 @@ impl RigCovariances {
         (names, DMatrix::from_fn(rows.len(), rows.len(), |i, j| self.kept[(rows[i], rows[j])]))
     }
 
+    /// The first row of a camera's mount in [`Self::kept`]; `None` of the origin.
+    pub fn first_of_mount(&self, camera: usize) -> Option<usize> {
+        self.mount[camera]
+    }
+
     /// The mount of a camera.
     pub fn mount(&self, camera: usize) -> Mount {
         Mount { pose: self.mounts[camera], covariance: self.between(camera, camera) }
