@@ -1,7 +1,7 @@
 //! Covariances of a rig.
 
 use calibench_model::Pose;
-use nalgebra::{DMatrix, Matrix6, Vector6};
+use nalgebra::{DMatrix, Matrix3x6, Matrix6, Vector6};
 
 use super::equations::RigNormals;
 use super::frames::{adjoint, relative};
@@ -59,6 +59,16 @@ impl Mount {
         [0, 1, 2].map(|i| shift[(i, i)].max(0.0).sqrt())
     }
 
+    /// Standard deviations of t of `N = M X + t`, along its own axes, object units: t turns with the camera.
+    pub fn translation_sigmas(&self) -> [f64; 3] {
+        let t = -(self.pose.rotation * self.pose.centre.coords);
+        // t' = t + d x t + s.
+        let turned = -t.cross_matrix();
+        let by = Matrix3x6::from_fn(|i, j| if j < 3 { turned[(i, j)] } else { f64::from(u8::from(i + 3 == j)) });
+        let all = by * self.covariance * by.transpose();
+        [0, 1, 2].map(|i| all[(i, i)].max(0.0).sqrt())
+    }
+
     /// Standard deviations of the rotation about its own axes, radians.
     pub fn rotation_sigmas(&self) -> [f64; 3] {
         [0, 1, 2].map(|i| self.covariance[(i, i)].max(0.0).sqrt())
@@ -112,7 +122,8 @@ impl RigCovariances {
         let pose = relative(&self.mounts[first], &self.mounts[second]);
         let adjoint = adjoint(&pose);
         let cross = self.between(second, first) * adjoint.transpose();
-        let covariance = self.between(second, second) + adjoint * self.between(first, first) * adjoint.transpose() - cross - cross.transpose();
+        let covariance =
+            self.between(second, second) + adjoint * self.between(first, first) * adjoint.transpose() - cross - cross.transpose();
         Mount { pose, covariance }
     }
 

@@ -29,11 +29,15 @@ fn the_adjoint_is_what_a_motion_of_the_rig_does_to_a_camera() {
     let adjoint = adjoint(&mount);
     for k in 0..6 {
         let moved = |h: f64| mounted(&mount, &turned(&station, &std::array::from_fn(|i| if i == k { h } else { 0.0 })));
-        let difference = (step_between(&mounted(&mount, &station), &moved(h)) - step_between(&mounted(&mount, &station), &moved(-h))) / (2.0 * h);
+        let difference =
+            (step_between(&mounted(&mount, &station), &moved(h)) - step_between(&mounted(&mount, &station), &moved(-h))) / (2.0 * h);
         assert!((difference - adjoint.column(k)).amax() < 1e-8, "{k}: {difference} {}", adjoint.column(k));
     }
     let (point, back) = (Point3::new(0.3, -0.4, 2.0), relative(&mount, &mounted(&pose(3.0), &mount)));
-    assert!((mounted(&mount, &station).camera_from_world(&point) - mount.camera_from_world(&station.camera_from_world(&point).into())).norm() < 1e-14);
+    assert!(
+        (mounted(&mount, &station).camera_from_world(&point) - mount.camera_from_world(&station.camera_from_world(&point).into())).norm()
+            < 1e-14
+    );
     assert!((back.rotation - pose(3.0).rotation).amax() < 1e-14 && (back.centre - pose(3.0).centre).norm() < 1e-14);
 }
 
@@ -42,15 +46,22 @@ fn rig() -> Rig {
     let camera = |f: f64| -> Camera {
         let mut distortion = [0.0; 14];
         distortion[..5].copy_from_slice(&[-0.1, 0.05, 2e-4, -3e-4, 0.01]);
-        OpenCv { size: ImageSize { width: 1280, height: 960 }, fx: f, fy: f + 2.0, cx: 640.0, cy: 470.0, distortion, coefficients: 5 }.into()
+        OpenCv { size: ImageSize { width: 1280, height: 960 }, fx: f, fy: f + 2.0, cx: 640.0, cy: 470.0, distortion, coefficients: 5 }
+            .into()
     };
     let first = Interior::fixed("a", camera(1000.0)).free(&["fx", "cy"]).unwrap().observed("k1", -0.11, 0.02).unwrap();
     let mut last = Interior::fixed("c", camera(900.0));
     last.parameters[..4].fill(Status::Free);
-    let mounts = [pose(0.0), Pose { centre: Point3::new(0.4, 0.02, -0.05), ..pose(0.3) }, Pose { centre: Point3::new(-0.3, 0.1, 0.03), ..pose(-0.2) }];
+    let mounts = [
+        pose(0.0),
+        Pose { centre: Point3::new(0.4, 0.02, -0.05), ..pose(0.3) },
+        Pose { centre: Point3::new(-0.3, 0.1, 0.03), ..pose(-0.2) },
+    ];
     let mut rig = Rig { mounts: mounts.to_vec(), origin: 1, ..Rig::default() };
     rig.network.cameras = vec![first, Interior::fixed("b", camera(950.0)), last];
-    rig.network.points = (0..12).map(|i| ObjectPoint::fixed(format!("{i}"), Point3::new((i % 4) as f64 * 0.3, (i / 4) as f64 * 0.3, 0.05 * (i % 3) as f64))).collect();
+    rig.network.points = (0..12)
+        .map(|i| ObjectPoint::fixed(format!("{i}"), Point3::new((i % 4) as f64 * 0.3, (i / 4) as f64 * 0.3, 0.05 * (i % 3) as f64)))
+        .collect();
     let precision = Precision::Covariance(Covariance { sxx: 0.5, sxy: 0.2, syy: 0.8 });
     for station in 0..4 {
         let centre = Point3::new(0.4 + 0.1 * station as f64, 0.3, 2.5 + 0.1 * station as f64);

@@ -25,7 +25,8 @@ pub(super) fn unconnected(frame: &Frame<'_>) -> Option<Defect> {
     }
     let mut sets: Vec<Vec<String>> = Vec::new();
     for first in 0..set.len() {
-        let members: Vec<String> = (0..set.len()).filter(|&camera| set[camera] == first).map(|camera| cameras[camera].name.clone()).collect();
+        let members: Vec<String> =
+            (0..set.len()).filter(|&camera| set[camera] == first).map(|camera| cameras[camera].name.clone()).collect();
         if !members.is_empty() {
             sets.push(members);
         }

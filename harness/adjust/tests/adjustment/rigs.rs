@@ -1,8 +1,8 @@
 //! Cameras that are mounted rigidly: truth, statistics, tests, and what is refused.
 
 use calibench_adjust::{
-    AdjustError, Defect, Exterior, ImageObservation, Interior, Options, Rig, Snooping, Station, Test, Variance, adjust, adjust_rig, relative,
-    snoop_rig,
+    AdjustError, Defect, Exterior, ImageObservation, Interior, Options, Rig, Snooping, Station, Test, Variance, adjust, adjust_rig,
+    relative, snoop_rig,
 };
 use calibench_model::Pose;
 use calibench_model::camera::CameraModel;

@@ -92,7 +92,8 @@ fn one_rig(calibration: &RigCalibration<'_>) -> Option<RigDoubt> {
 }
 
 fn gross(calibration: &RigCalibration<'_>) -> Option<RigDoubt> {
-    let (left_out, all) = (calibration.found.iter().filter(|found| found.left_out).count(), calibration.prepared.rig.network.observations.len());
+    let (left_out, all) =
+        (calibration.found.iter().filter(|found| found.left_out).count(), calibration.prepared.rig.network.observations.len());
     (left_out as f64 > LEFT_OUT * all as f64).then(|| {
         let words = format!("gross errors: {left_out} of {all} image points were left out, and what is left need not be the right part");
         RigDoubt { subject: RigSubject::GrossErrors, camera: None, words }
@@ -102,7 +103,9 @@ fn gross(calibration: &RigCalibration<'_>) -> Option<RigDoubt> {
 fn files(calibration: &RigCalibration<'_>) -> Option<RigDoubt> {
     let held = calibration.held.as_ref()?;
     let sigma = |camera: usize| worst_sigma(calibration, camera);
-    let far = (0..held.moves.len()).filter(|&camera| held.moves[camera] > TIMES * sigma(camera)).max_by(|&a, &b| held.moves[a].total_cmp(&held.moves[b]))?;
+    let far = (0..held.moves.len())
+        .filter(|&camera| held.moves[camera] > TIMES * sigma(camera))
+        .max_by(|&a, &b| held.moves[a].total_cmp(&held.moves[b]))?;
     (held.p < ALPHA).then(|| {
         let words = format!(
             "with the cameras held as their files say {} sits {} away from here, {:.1} standard deviations, and that fits worse than chance allows (p {:.1e}): the files are not of these images, or the interiors are hardly determined here",
@@ -136,7 +139,10 @@ fn mount(calibration: &RigCalibration<'_>, camera: usize) -> Option<RigDoubt> {
     let known = with_known_interiors(calibration, camera)?;
     let [formal, held] = [largest(&mount), largest(&Mount { covariance: known, ..mount })];
     let why = if formal > BY_INTERIORS * held {
-        format!("with known interiors it would be {}: give the cameras' own calibrations (--start and --solve none, or --prior)", number(held * sigma / formal))
+        format!(
+            "with known interiors it would be {}: give the cameras' own calibrations (--start and --solve none, or --prior)",
+            number(held * sigma / formal)
+        )
     } else {
         "more moments at which both see the points, from other directions, would tell".to_owned()
     };

@@ -46,8 +46,7 @@ impl BySets {
             return Err(format!("more than {MOST} image points"));
         }
         let groups = sets.min(GROUPS);
-        let found: Option<Vec<Without>> =
-            (0..groups).into_par_iter().map(|group| without(&rig, left_out, (group, groups))).collect();
+        let found: Option<Vec<Without>> = (0..groups).into_par_iter().map(|group| without(&rig, left_out, (group, groups))).collect();
         let found = found.ok_or("without some of the sets the rig is not determined")?;
         let factor = (groups - 1) as f64 / groups as f64;
         let scatter = |camera: usize| {

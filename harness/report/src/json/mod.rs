@@ -9,6 +9,7 @@ mod doubted;
 mod judgement;
 mod measurement;
 mod next;
+mod rig;
 mod schema;
 mod text;
 
@@ -25,6 +26,7 @@ pub use conversion::{ConversionAnswer, ConvertedCamera};
 pub use difference::{DifferenceAnswer, Part};
 pub use judgement::JudgementAnswer;
 pub use measurement::{MeasurementAnswer, MeasurementCounts};
+pub use rig::RigAnswer;
 pub use schema::{COMMANDS, schema_of};
 
 /// What a command answers.
