@@ -52,6 +52,7 @@ mod project;
 mod records;
 mod render;
 mod resect;
+mod rigs;
 mod schema;
 mod sets;
 mod several;

@@ -22,6 +22,11 @@ pub enum Defect {
         /// Name and number of points.
         images: Vec<(String, usize)>,
     },
+    /// Cameras of a rig that share no station with each other.
+    Unconnected {
+        /// Names of the cameras of each set that is connected in itself.
+        sets: Vec<Vec<String>>,
+    },
     /// Fewer observations than unknowns, or parameters of a camera without an image.
     Count {
         /// In words.
@@ -95,6 +100,10 @@ impl fmt::Display for Defect {
             }
             Self::Points { points } => write!(f, "too few rays: {}", counted(points, "point", "images")),
             Self::Images { images } => write!(f, "too few points: {}", counted(images, "image", "points")),
+            Self::Unconnected { sets } => {
+                let sets: Vec<String> = sets.iter().map(|set| some(set)).collect();
+                write!(f, "the cameras are not one rig: no station joins {}", sets.join(" with "))
+            }
             Self::Count { missing } => f.write_str(missing),
             Self::Directions { directions, reasons } => {
                 let directions = directions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
@@ -110,4 +119,11 @@ fn because(f: &mut fmt::Formatter<'_>, reasons: &[Reason]) -> fmt::Result {
         return Ok(());
     }
     write!(f, ": {}", reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
+}
+
+/// Some names, and how many more there are.
+fn some(names: &[String]) -> String {
+    let shown = names.iter().take(5).cloned().collect::<Vec<_>>().join(", ");
+    let all = if names.len() > 5 { format!("{shown} and {} more", names.len() - 5) } else { shown };
+    if names.len() > 1 { format!("({all})") } else { all }
 }

@@ -18,6 +18,7 @@ mod error;
 mod network;
 mod normal;
 mod quality;
+mod rig;
 mod solution;
 mod solve;
 mod state;
@@ -34,6 +35,7 @@ pub use quality::{
     Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, frame_weight, image_information,
     scale_of, snoop,
 };
+pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
 pub use solution::{Options, Solution, adjust};
 
 /// The example of the README.

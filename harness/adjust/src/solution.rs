@@ -33,7 +33,7 @@ impl Default for Options {
 }
 
 impl Options {
-    fn check(&self, network: &Network) -> Result<(), NetworkError> {
+    pub(crate) fn check(&self, network: &Network) -> Result<(), NetworkError> {
         let count = network.observations.len();
         if let Some(&index) = self.left_out.iter().find(|&&index| index >= count) {
             return Err(NetworkError::NoSuch { of: "left_out".into(), what: "observation", index, count });

@@ -83,7 +83,7 @@ impl Step {
 }
 
 /// The pose after a small rotation about the camera's axes and a shift along them, `N + d x N + s`.
-fn turned(pose: &Pose, step: &[f64; 6]) -> Pose {
+pub(crate) fn turned(pose: &Pose, step: &[f64; 6]) -> Pose {
     let [a, b, c, x, y, z] = *step;
     let mut rotation = Rotation3::new(Vector3::new(a, b, c)) * Rotation3::from_matrix_unchecked(pose.rotation);
     rotation.renormalize();

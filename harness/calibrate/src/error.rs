@@ -64,6 +64,12 @@ pub enum CalibrationError {
         /// The first image.
         first: String,
     },
+    /// Images of a rig that cannot be paired, in words.
+    #[error("{0}")]
+    Pairing(String),
+    /// What a rig is not adjusted with, in words.
+    #[error("{0}")]
+    Rig(String),
     /// A datum's target that is no measured control point.
     #[error("the datum names {target}, which is no measured control point")]
     DatumTarget {

@@ -29,6 +29,7 @@ mod placed;
 mod prepared;
 mod prior;
 mod resampled;
+pub mod rig;
 mod rival;
 mod search;
 mod sets;

@@ -5,12 +5,14 @@
 //! are a pinhole camera's, for nothing else in the file tells them apart. With `xi` it is the camera of cv2.omnidir, which is Mei's.
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Omni, OpenCv, OpenCvFisheye};
+use calibench_model::named_camera::{Pose, PoseFrame};
 use nalgebra::{DMatrix, DVector};
 
 use super::number::pixels;
 use super::opencv_model::{self, Kind, kind};
 use super::opencv_names::{Pair, pairs};
 use super::opencv_storage::Matrix;
+use super::pose::of_rt;
 use super::tree::{Entry, Value};
 use super::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
 
@@ -46,6 +48,9 @@ const ABOUT: [&str; 18] = [
     "per_view_reprojection_errors",
 ];
 
+/// Of two cameras: the second against the first, and what follows from that and is no more than the cameras say.
+const OF_PAIR: [&str; 11] = ["R", "T", "E", "F", "R1", "R2", "P1", "P2", "Q", "validRoi1", "validRoi2"];
+
 /// The cameras of a FileStorage: one under the usual names, or as many as [`pairs`] finds, each called as its matrix is.
 pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let usual = (root.get(&CAMERA_MATRIX)?, root.get(&DISTORTION)?);
@@ -60,6 +65,10 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
     let usual = [&CAMERA_MATRIX[..], &DISTORTION, &WIDTH, &HEIGHT, &SIZE, &XI, &NAME, &SPREADS, &ABOUT].concat();
     let mut known: Vec<&str> = pairs.iter().flatten().map(|pair| pair.0).collect();
     usual.into_iter().chain(opencv_model::keys()).for_each(|name| known.push(name));
+    let between = if pairs.len() == 2 { between(root)? } else { None };
+    if between.is_some() {
+        known.extend(OF_PAIR);
+    }
     let notes = root.of_file(&known, options)?;
     let name = root.get(&NAME)?.map(|(_, entry)| entry.text()).transpose()?;
     let one = |pair: &Pair<'_>| {
@@ -69,7 +78,29 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
         let covariance = if is_usual { spreads(root, &camera, &mut notes)? } else { None };
         Ok(NamedCamera { covariance, notes, ..NamedCamera::new(name.unwrap_or(own), camera) })
     };
-    pairs.iter().map(one).collect()
+    let mut cameras: Vec<NamedCamera> = pairs.iter().map(one).collect::<Result<_, _>>()?;
+    if let (Some(pose), [first, second]) = (between, &mut cameras[..]) {
+        (first.pose, second.pose) = (Some(Pose::IDENTITY), Some(pose));
+        (first.pose_frame, second.pose_frame) = (PoseFrame::FirstCamera, PoseFrame::FirstCamera);
+    }
+    Ok(cameras)
+}
+
+/// The second of two cameras against the first, where the file says it as OpenCV's stereo sample does.
+fn between(root: &Entry) -> Result<Option<Pose>, CameraFileError> {
+    let (Some(r), Some(t)) = (root.key(OF_PAIR[0])?, root.key(OF_PAIR[1])?) else { return Ok(None) };
+    let of = |entry: &Entry, name: &str, count: usize| {
+        let found = entry.matrix(9).map_err(|error| placed(error, name, entry))?;
+        let right = found.data.len() == count;
+        if right {
+            Ok(found.data)
+        } else {
+            Err(placed(CameraFileError::new(format!("expected {count} numbers, found {}", found.data.len())), name, entry))
+        }
+    };
+    let (rotation, t) = (of(r, OF_PAIR[0], 9)?, of(t, OF_PAIR[1], 3)?);
+    let rotation = std::array::from_fn(|i| std::array::from_fn(|j| rotation[3 * i + j]));
+    of_rt(rotation, [t[0], t[1], t[2]]).map(Some).map_err(|error| placed(error, OF_PAIR[0], r))
 }
 
 /// The camera of a matrix and coefficients, and what was assumed of it.

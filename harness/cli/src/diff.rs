@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_cameras::inputs_of;
+use calibench_cameras::{ReadOptions, inputs_of, read_camera_with};
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
-use calibench_model::convert::{Difference, DifferenceOptions, Vector, difference, difference_at};
+use calibench_model::convert::{Difference, DifferenceOptions, Vector, difference, difference_at, rig_difference};
 use calibench_report::json::{DifferenceAnswer, Part};
 use calibench_report::{Hull, plain};
 use clap::Args;
@@ -38,6 +38,9 @@ pub struct Diff {
     /// Say what the difference is on an object at this distance, in its unit
     #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
     distance: Option<f64>,
+    /// Compare rigs: files of several cameras with where they sit, as Kalibr's chains and OpenCV's stereo files; needs --distance
+    #[arg(long, requires = "distance", conflicts_with_all = ["plot", "points", "no_rotation", "radius", "json"])]
+    rig: bool,
     #[command(flatten)]
     reading: Reading,
     #[command(flatten)]
@@ -46,6 +49,9 @@ pub struct Diff {
 
 impl Diff {
     pub fn run(&self) -> Result<(), Failure> {
+        if let (true, Some(distance)) = (self.rig, self.distance) {
+            return self.rigs(distance);
+        }
         let inputs = inputs_of([&self.first, &self.second].into_iter().chain(&self.points));
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let camera = |path: &Path| {
@@ -85,6 +91,35 @@ impl Diff {
         let Some(plot) = &plot else { return Ok(()) };
         let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
         Ok(field(&title, &first, &found.vectors, measured).write(plot)?)
+    }
+
+    /// Each camera of a rig beside its first one against those of the other rig, in the order of the files.
+    fn rigs(&self, distance: f64) -> Result<(), Failure> {
+        let read = |path: &Path| Ok::<_, Failure>(read_camera_with(path, &ReadOptions::default())?.cameras);
+        let (first, second) = (read(&self.first)?, read(&self.second)?);
+        if first.len() != second.len() || first.len() < 2 {
+            let counts = format!("{} and {} cameras", first.len(), second.len());
+            return Err(Failure::input(format!("the files hold {counts}; expected two rigs of as many, two at least")));
+        }
+        let mut text = String::new();
+        for (place, (a, b)) in first.iter().zip(&second).enumerate().skip(1) {
+            let found = rig_difference([&first[0], a], [&second[0], b], distance);
+            let found = found.map_err(|why| Failure::input(format!("camera {} of the rigs: {why}", place + 1)))?;
+            let name = if a.name.is_empty() { format!("camera {}", place + 1) } else { a.name.clone() };
+            text.push_str(&format!(
+                "{name}: moved by {}, turned by {:.4}\u{b0}; baselines {} and {}\nat {distance}: {} RMS, {} at most; {} px RMS, {} px at most, of {} points\n",
+                plain(found.moved),
+                found.turned_deg,
+                plain(found.baselines[0]),
+                plain(found.baselines[1]),
+                plain(found.at_distance[0]),
+                plain(found.at_distance[1]),
+                plain(found.px[0]),
+                plain(found.px[1]),
+                found.points
+            ));
+        }
+        print(&text)
     }
 
     fn words(&self, found: &Difference, parts: Option<[Option<Part>; 2]>) -> String {

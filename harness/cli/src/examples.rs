@@ -88,6 +88,10 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench calibrate --points points.csv --control control.csv --size 4272x2848 -o camera.yaml", "from points"),
             ("calibench calibrate --points points.csv --distances bars.csv --size 8688x5792 --length 6,8", "from points without coordinates, and scale bars"),
             ("calibench calibrate a.jpg b.jpg --board aprilgrid:6x6:0.088:0.3 --json", "the answer for a program"),
+            (
+                "calibench calibrate left*.png right*.png --board 9x6:25 --rig left,right --sync left*.png=right*.png -o rig",
+                "two cameras on a bar, with files for Kalibr, OpenCV and COLMAP",
+            ),
         ],
     ),
     (
@@ -118,6 +122,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         &[
             ("calibench diff a.xml b.yaml --plot diff.png", "px over the frame, after the best rotation"),
             ("calibench diff a.xml b.yaml --points points.csv --distance 5", "where points were measured, and on an object"),
+            ("calibench diff before.yaml after.yaml --rig --distance 2", "two rigs, at 2 units before them"),
         ],
     ),
     ("stmap", &[("calibench stmap camera.xml --redistort --overscan auto -o map.exr", "for Nuke or Blender")]),

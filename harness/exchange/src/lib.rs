@@ -8,6 +8,7 @@ pub mod points;
 pub mod points_write;
 pub mod rendered;
 pub mod stations;
+pub mod times;
 
 pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use distances::read_distances;
@@ -16,6 +17,7 @@ pub use points::{PointFile, PointFileError, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};
 pub use stations::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_observed_stations, read_stations, station_numbers};
+pub use times::read_times;
 
 /// The example of the README.
 #[cfg(doctest)]

@@ -13,5 +13,5 @@ mod tests;
 
 pub(crate) use blocks::{Normals, Rows, Scratch, linearise, residuals};
 pub(crate) use distances::Stretch;
-pub(crate) use image_equations::Lost;
+pub(crate) use image_equations::{Lost, Residual};
 pub(crate) use robust::Loss;

@@ -17,6 +17,7 @@ pub use image_information::image_information;
 pub use lengths::Length;
 pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
+pub(crate) use reliability::{critical, image_point};
 pub use residuals::{Residual, Use};
 pub use robust::{adjust_robustly, scale_of};
 pub use significance::{Comparison, Significance, compare};

@@ -5,8 +5,8 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::AdjustError;
-use crate::network::{Attitude, Centre, Sight, Status};
-use crate::normal::{Lost, Rows, Scratch, Stretch};
+use crate::network::{Attitude, Centre, Precision, Sight, Status};
+use crate::normal::{Lost, Residual, Rows, Scratch, Stretch};
 use crate::solution::Solution;
 use crate::solve::{Coupling, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
@@ -127,11 +127,8 @@ impl Solution<'_> {
 
     /// Beyond which normalised residuals are rejected, and by which standard deviation of unit weight they are normalised.
     pub(super) fn bound(&self, test: Test) -> Result<(f64, f64), AdjustError> {
-        let possible = |p: f64| p > 0.0 && p < 1.0;
-        if !(possible(test.alpha) && possible(test.power)) {
-            return Err(AdjustError::NotAvailable("alpha and power of a test lie between 0 and 1"));
-        }
-        Ok((Normal::standard().inverse_cdf(1.0 - 0.5 * test.alpha), self.residual_variance(test.variance)?.sqrt()))
+        let (critical, _) = critical(test)?;
+        Ok((critical, self.residual_variance(test.variance)?.sqrt()))
     }
 
     /// Tests all image points, in the order given; returns the cofactors of what was eliminated, as they are needed on the way.
@@ -240,22 +237,10 @@ impl Solution<'_> {
         sum
     }
 
-    fn image_point(&self, index: usize, adjusted: Matrix2<f64>, [sigma0, noncentrality]: [f64; 2]) -> PointReliability {
+    fn image_point(&self, index: usize, adjusted: Matrix2<f64>, scale: [f64; 2]) -> PointReliability {
         let (sight, residual): (&Sight, _) = (&self.engine.layout.sights[index], &self.end.normals.residuals[index]);
-        let [a, b, c] = sight.observed(&self.engine.network.observations).precision.whitening().map(|w| w * residual.weight.sqrt());
-        let white = Matrix2::new(a, 0.0, b, c);
-        let rest = Matrix2::identity() - adjusted;
-        // Q_vv P = W^-1 (1 - A Q A^T) W and P Q_vv P = W^T (1 - A Q A^T) W, with P = W^T W.
-        let numbers = white.try_inverse().map_or_else(Matrix2::zeros, |inverse| inverse * rest * white);
-        let test = white.transpose() * rest * white;
-        let weighted = white.transpose() * (white * Vector2::from(residual.px));
-        let root = |i: usize| (numbers[(i, i)] > UNCHECKED && test[(i, i)] > 0.0).then(|| test[(i, i)].sqrt());
-        PointReliability {
-            observation: sight.given as usize,
-            redundancy: [0, 1].map(|i| numbers[(i, i)].clamp(0.0, 1.0)),
-            w: [0, 1].map(|i| root(i).map_or(0.0, |root| weighted[i] / (sigma0 * root))),
-            detectable: [0, 1].map(|i| root(i).map_or(f64::INFINITY, |root| noncentrality * sigma0 / root)),
-        }
+        let precision = sight.observed(&self.engine.network.observations).precision;
+        image_point(sight.given as usize, (precision, residual), adjusted, scale)
     }
 
     fn observed(&self, inverse: &Inverse, cofactors: &Covariances, scale: [f64; 2]) -> Vec<ObservedReliability> {
@@ -307,6 +292,39 @@ impl Solution<'_> {
             add(network.name_of_distance(distance), stretch.length - distance.value, distance.sigma, self.of_distance(inverse, index, &stretch));
         }
         found
+    }
+}
+
+/// Beyond which normalised residuals are rejected, and the shift that is found with the power asked for.
+pub(crate) fn critical(test: Test) -> Result<(f64, f64), AdjustError> {
+    let possible = |p: f64| p > 0.0 && p < 1.0;
+    if !(possible(test.alpha) && possible(test.power)) {
+        return Err(AdjustError::NotAvailable("alpha and power of a test lie between 0 and 1"));
+    }
+    let critical = Normal::standard().inverse_cdf(1.0 - 0.5 * test.alpha);
+    Ok((critical, critical + Normal::standard().inverse_cdf(test.power)))
+}
+
+/// The test of an image point, from `A Q A^T` of its white equations.
+pub(crate) fn image_point(
+    observation: usize,
+    (precision, residual): (Precision, &Residual),
+    adjusted: Matrix2<f64>,
+    [sigma0, noncentrality]: [f64; 2],
+) -> PointReliability {
+    let [a, b, c] = precision.whitening().map(|w| w * residual.weight.sqrt());
+    let white = Matrix2::new(a, 0.0, b, c);
+    let rest = Matrix2::identity() - adjusted;
+    // Q_vv P = W^-1 (1 - A Q A^T) W and P Q_vv P = W^T (1 - A Q A^T) W, with P = W^T W.
+    let numbers = white.try_inverse().map_or_else(Matrix2::zeros, |inverse| inverse * rest * white);
+    let test = white.transpose() * rest * white;
+    let weighted = white.transpose() * (white * Vector2::from(residual.px));
+    let root = |i: usize| (numbers[(i, i)] > UNCHECKED && test[(i, i)] > 0.0).then(|| test[(i, i)].sqrt());
+    PointReliability {
+        observation,
+        redundancy: [0, 1].map(|i| numbers[(i, i)].clamp(0.0, 1.0)),
+        w: [0, 1].map(|i| root(i).map_or(0.0, |root| weighted[i] / (sigma0 * root))),
+        detectable: [0, 1].map(|i| root(i).map_or(f64::INFINITY, |root| noncentrality * sigma0 / root)),
     }
 }
 

@@ -10,6 +10,7 @@ mod networks;
 mod noise_free;
 mod projection_uncertainty;
 mod quality;
+mod rigs;
 mod significance;
 mod stand;
 mod standard_deviations;

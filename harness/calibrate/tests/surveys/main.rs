@@ -11,6 +11,7 @@ mod pairs;
 mod planted;
 mod points;
 mod resampled;
+mod rigs;
 mod shapes;
 mod starts;
 mod surveys;

@@ -36,7 +36,7 @@ mod theia;
 #[cfg(test)]
 mod example;
 
-pub(super) use opencv_yaml::tree as yaml;
+pub(super) use opencv_yaml::{matrix as yaml_matrix, tree as yaml};
 
 use super::format::{CameraFormat, PLAIN};
 

@@ -165,7 +165,7 @@ pub(super) fn quoted(text: &str) -> String {
     out + "\""
 }
 
-fn matrix(name: &str, rows: usize, data: &[f64]) -> String {
+pub(crate) fn matrix(name: &str, rows: usize, data: &[f64]) -> String {
     let columns = data.len() / rows;
     let lines: Vec<String> =
         data.chunks(columns.max(3)).map(|row| row.iter().map(|&v| scientific(v)).collect::<Vec<_>>().join(", ")).collect();

@@ -29,7 +29,7 @@ pub struct Cameras {
     /// Camera model: photogrammetric, opencv5, metashape and others [default: photogrammetric with --pitch, or else opencv5]
     #[arg(long, value_name = "[CAMERA=]MODEL", value_parser = |text: &str| For::parse(text, model))]
     model: Vec<For<String>>,
-    /// Parameters to solve for, as in c,x0,y0,k1; the others keep their start values [default: what the model usually needs]
+    /// Parameters to solve for, as in c,x0,y0,k1, or none; the others keep their start values [default: what the model usually needs]
     #[arg(long, value_name = "[CAMERA=]NAMES", value_parser = |text: &str| For::parse(text, names))]
     solve: Vec<For<Vec<String>>>,
     /// An observed parameter and its standard deviation, in the parameter's unit, as in k1=-3e-4:1e-5; may be repeated
@@ -70,6 +70,9 @@ fn model(text: &str) -> Result<String, String> {
 }
 
 fn names(text: &str) -> Result<Vec<String>, String> {
+    if text == "none" {
+        return Ok(Vec::new());
+    }
     let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
     if names.iter().any(String::is_empty) { Err("expected names of parameters, as in c,x0,y0,k1".into()) } else { Ok(names) }
 }
@@ -116,13 +119,39 @@ impl Cameras {
 
     /// All cameras. Of photographs the sizes are known; of points somebody has to say them.
     pub fn optics(&self, photos: &[Photo]) -> Result<Vec<Optics>, Failure> {
-        self.check()?;
+        self.optics_of(&self.claims, photos, true)
+    }
+
+    /// The cameras called `names`, in this order; their images are those that `patterns` name, where these are given, or else their own.
+    pub fn of_rig(&self, names: &[String], patterns: Option<Vec<Pattern>>, photos: &[Photo]) -> Result<Vec<Optics>, Failure> {
+        let claims = match patterns {
+            Some(patterns) if self.claims.is_empty() => {
+                names.iter().zip(patterns).map(|(name, pattern)| Claim { name: name.clone(), images: vec![pattern] }).collect()
+            }
+            _ => self.claims.clone(),
+        };
+        let known: Vec<&str> = claims.iter().map(|claim| claim.name.as_str()).collect();
+        if let Some(stranger) = names.iter().find(|name| !known.contains(&name.as_str())) {
+            return Err(no_such("rig", stranger, &known));
+        }
+        let ordered: Vec<Claim> = names.iter().filter_map(|name| claims.iter().find(|claim| claim.name == *name).cloned()).collect();
+        // A file for all of them may hold them all.
+        self.optics_of(&ordered, photos, self.common_start().is_none())
+    }
+
+    /// A camera file for all cameras together.
+    pub fn common_start(&self) -> Option<&str> {
+        self.start.iter().find(|start| start.camera.is_none()).map(|start| start.value.as_str())
+    }
+
+    fn optics_of(&self, claims: &[Claim], photos: &[Photo], starts: bool) -> Result<Vec<Optics>, Failure> {
+        self.check(claims)?;
         let bare = |claim: &Claim| Optics {
             name: claim.name.clone(),
             images: claim.images.clone(),
             ..Optics::new(ImageSize { width: 1, height: 1 })
         };
-        let mut cameras: Vec<Optics> = self.claims.iter().map(bare).collect();
+        let mut cameras: Vec<Optics> = claims.iter().map(bare).collect();
         if cameras.is_empty() {
             cameras.push(Optics::new(ImageSize { width: 1, height: 1 }));
         }
@@ -145,7 +174,11 @@ impl Cameras {
             camera.model = of(&self.model, &camera.name).cloned();
             camera.solve = of(&self.solve, &camera.name).cloned();
             camera.priors = self.priors(&camera.name);
-            camera.start = self.start(&camera.name).map(|path| crate::inputs::camera(path.as_ref(), Some(camera.size))).transpose()?;
+            camera.start = self
+                .start(&camera.name)
+                .filter(|_| starts)
+                .map(|path| crate::inputs::camera(path.as_ref(), Some(camera.size)))
+                .transpose()?;
         }
         Ok(cameras)
     }
@@ -168,12 +201,12 @@ impl Cameras {
     }
 
     /// Cameras that there are, each once.
-    fn check(&self) -> Result<(), Failure> {
-        let known: Vec<&str> = self.claims.iter().map(|claim| claim.name.as_str()).collect();
+    fn check(&self, claims: &[Claim]) -> Result<(), Failure> {
+        let known: Vec<&str> = claims.iter().map(|claim| claim.name.as_str()).collect();
         if let Some(twice) = known.iter().enumerate().find(|(i, name)| known[..*i].contains(name)) {
             return Err(Failure::input(format!("--camera {}: given twice; expected all its patterns in one, with commas", twice.1)));
         }
-        let alone = self.claims.is_empty();
+        let alone = claims.is_empty();
         let start = if alone { vec![None; self.start.len()] } else { given(&self.start) };
         for (flag, given) in [
             ("size", given(&self.size)),

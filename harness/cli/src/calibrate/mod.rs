@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::{
-    BoardShape, Calibration, CalibrationError, DatumChoice, Discs, GrossErrors, MOST_TRIED, Risk, Settings, Suspected, calibrate, prepare,
-    prepare_free, suspected,
+    BoardShape, Calibration, CalibrationError, DatumChoice, Discs, GrossErrors, MOST_TRIED, Optics, Risk, Settings, Suspected, calibrate,
+    prepare, prepare_free, suspected,
 };
 use calibench_cameras::inputs_of;
 use calibench_exchange::{PointFile, read_control, read_distances, read_observed_stations};
@@ -30,6 +30,7 @@ use crate::failure::Failure;
 mod camera_file;
 mod cameras;
 mod photographs;
+mod rig;
 
 use cameras::Cameras;
 
@@ -76,6 +77,8 @@ pub struct Calibrate {
     length: Vec<[String; 2]>,
     #[command(flatten)]
     cameras: Cameras,
+    #[command(flatten)]
+    rig: rig::RigArguments,
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, free:A,B,C,... (these targets stay closest to their start values), or minimal:A,B,C,D,E (X and Y of two, Z of three) [default: control; without --control free]
     #[arg(long, value_name = "DATUM")]
     datum: Option<DatumChoice>,
@@ -109,7 +112,7 @@ pub struct Calibrate {
     /// Sets of parameters to compare, as in "c,x0,y0,k1;c,x0,y0,k1,k2": sigma0, tests, change of the camera
     #[arg(long, value_name = "SETS", value_delimiter = ';')]
     compare: Vec<String>,
-    /// The camera file [default: none is written]; of several cameras, where the format holds one, a file for each: NAME-CAMERA.ENDING
+    /// The camera file [default: none is written]; of several cameras, where the format holds one, a file for each: NAME-CAMERA.ENDING; of a rig a folder
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Convention or tool of the camera file, as for `convert` [default: by model and ending]
@@ -150,6 +153,9 @@ struct Input {
 
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        if self.rig.is_asked() {
+            return self.run_rig(context);
+        }
         let given = [&self.points, &self.control, &self.approx, &self.distances, &self.poses].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("calibrate", None))).transpose()?;
@@ -217,10 +223,18 @@ impl Calibrate {
 
     /// What reads the photographs. Of several cameras each has its own size and orientation.
     fn reader(&self) -> Result<Reader, Failure> {
-        if self.cameras.are_several() { self.read.reader(&self.photos) } else { self.read.of_one_camera(&self.photos, self.only_size) }
+        if self.cameras.are_several() || self.rig.is_asked() {
+            self.read.reader(&self.photos)
+        } else {
+            self.read.of_one_camera(&self.photos, self.only_size)
+        }
     }
 
     fn settings(&self, photos: &[Photo], discs: Option<Discs>) -> Result<Settings, Failure> {
+        self.settings_of(self.cameras.optics(photos)?, discs)
+    }
+
+    fn settings_of(&self, cameras: Vec<Optics>, discs: Option<Discs>) -> Result<Settings, Failure> {
         Ok(Settings {
             datum: self.datum(),
             distances: self.distances.as_deref().map(read_distances).transpose()?.unwrap_or_default(),
@@ -232,7 +246,7 @@ impl Calibrate {
             covariances: self.covariances,
             discs,
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
-            ..Settings::new(self.cameras.optics(photos)?)
+            ..Settings::new(cameras)
         })
     }
 

@@ -11,6 +11,7 @@ mod fit;
 mod grid;
 mod mistake;
 mod naive;
+mod rig_difference;
 mod rotation;
 mod target;
 #[cfg(test)]
@@ -30,6 +31,7 @@ pub use difference::{Compensated, Difference, DifferenceOptions, difference, dif
 pub use grid::{Region, Spread, Vector, cell_share};
 pub use mistake::{Mistake, mistaken};
 pub use naive::{Tangential, from_naive, naive};
+pub use rig_difference::{RigDifference, rig_difference};
 pub use rotation::Rotation;
 pub use target::Target;
 pub use tool::Tool;

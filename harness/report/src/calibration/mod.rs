@@ -12,6 +12,7 @@ mod limits;
 mod next;
 mod page;
 mod ply;
+mod rig;
 mod scale;
 mod sets_page;
 mod tables;
@@ -24,6 +25,7 @@ pub use crate::corners::Pictured;
 pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;
+pub use rig::rig_summary;
 pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

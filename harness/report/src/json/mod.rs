@@ -10,6 +10,7 @@ mod judgement;
 mod lengths;
 mod measurement;
 mod next;
+mod rig;
 mod schema;
 mod text;
 
@@ -26,6 +27,7 @@ pub use conversion::{ConversionAnswer, ConvertedCamera};
 pub use difference::{DifferenceAnswer, Part};
 pub use judgement::JudgementAnswer;
 pub use measurement::{MeasurementAnswer, MeasurementCounts};
+pub use rig::RigAnswer;
 pub use schema::{COMMANDS, schema_of};
 
 /// What a command answers.

@@ -4,11 +4,14 @@ use calibench_exchange::MeasuredRow;
 use schemars::schema_for;
 use serde_json::{Value, json};
 
-use super::{Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, MeasurementAnswer};
+use super::{
+    Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, MeasurementAnswer, RigAnswer,
+};
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 6] = [
+pub const COMMANDS: [&str; 7] = [
     CalibrationAnswer::COMMAND,
+    RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
     ConversionAnswer::COMMAND,
     CameraFileAnswer::COMMAND,
@@ -23,6 +26,7 @@ type Measured = MeasurementAnswer<'static, std::iter::Empty<MeasuredRow<'static>
 pub fn schema_of(command: &str) -> Option<Value> {
     Some(match command {
         CalibrationAnswer::COMMAND => of::<CalibrationAnswer>(),
+        RigAnswer::COMMAND => of::<RigAnswer>(),
         JudgementAnswer::COMMAND => of::<JudgementAnswer>(),
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
         CameraFileAnswer::COMMAND => of::<CameraFileAnswer>(),
