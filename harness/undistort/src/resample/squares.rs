@@ -1,0 +1,365 @@
+//! The squares of a band, pixel by pixel: what takes the time.
+
+use calibench_model::camera::ImageSize;
+
+use crate::cell::{Cell, Run, SIDE};
+use crate::kernel::{Kernel, Table};
+use crate::picture::{Picture, Sample};
+
+/// Squares side by side, and what they are made from.
+pub(super) struct Job<'a, T> {
+    pub(super) cells: &'a [Cell],
+    /// The size of the map's source.
+    pub(super) source: ImageSize,
+    /// The source, or a part of it that begins at `offset`.
+    pub(super) picture: Picture<'a, T>,
+    pub(super) offset: [i32; 2],
+    /// Whether means over the area of a pixel are taken.
+    pub(super) area: bool,
+}
+
+/// Fills rows of squares, as many as they have.
+pub(super) type Squares<T> = fn(&Job<'_, T>, Kernel, &mut [T]);
+
+/// Levels for which there are loops.
+pub trait Sampled: Sized {
+    /// The loop of a kernel for so many channels, if there is one.
+    #[expect(private_interfaces, reason = "nobody else can call it, nor need to")]
+    fn squares(kernel: Kernel, channels: usize) -> Option<Squares<Self>>;
+}
+
+/// Channels of a pixel at most for which there are loops.
+const CHANNELS: usize = 3;
+
+macro_rules! loops {
+    ($level:ty: $($name:ident = $inner:ident<$($number:literal),*>;)*) => {
+        $(
+            // The first target that the machine has is taken.
+            #[cfg_attr(
+                not(any(test, debug_assertions)),
+                multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))
+            )]
+            fn $name(job: &Job<'_, $level>, kernel: Kernel, into: &mut [$level]) {
+                $inner::<$level, $($number),*>(job, kernel, into);
+            }
+        )*
+    };
+}
+
+macro_rules! sampled {
+    ($level:ty, $module:ident) => {
+        mod $module {
+            use super::*;
+
+            loops! {
+                $level:
+                linear_grey = linear<1>;
+                linear_colour = linear<3>;
+                cubic_grey = taps<1, 4, 4>;
+                cubic_colour = taps<3, 4, 12>;
+                lanczos3_grey = taps<1, 6, 8>;
+                lanczos3_colour = taps<3, 6, 24>;
+                lanczos4_grey = taps<1, 8, 8>;
+                lanczos4_colour = taps<3, 8, 24>;
+            }
+
+            impl Sampled for $level {
+                #[expect(private_interfaces, reason = "as in the trait")]
+                fn squares(kernel: Kernel, channels: usize) -> Option<Squares<Self>> {
+                    Some(match (kernel, channels) {
+                        (Kernel::Linear | Kernel::Area, 1) => linear_grey,
+                        (Kernel::Linear | Kernel::Area, 3) => linear_colour,
+                        (Kernel::Cubic, 1) => cubic_grey,
+                        (Kernel::Cubic, 3) => cubic_colour,
+                        (Kernel::Lanczos3, 1) => lanczos3_grey,
+                        (Kernel::Lanczos3, 3) => lanczos3_colour,
+                        (Kernel::Lanczos4, 1) => lanczos4_grey,
+                        (Kernel::Lanczos4, 3) => lanczos4_colour,
+                        _ => return None,
+                    })
+                }
+            }
+        }
+    };
+}
+
+sampled!(u8, bytes);
+sampled!(u16, words);
+
+loops! {
+    f32:
+    linear_plane = linear<1>;
+    cubic_plane = taps<1, 4, 4>;
+    six_plane = taps<1, 6, 8>;
+    eight_plane = taps<1, 8, 8>;
+}
+
+impl Sampled for f32 {
+    #[expect(private_interfaces, reason = "as in the trait")]
+    fn squares(_: Kernel, _: usize) -> Option<Squares<Self>> {
+        None
+    }
+}
+
+/// The loop for a plane, which may hold the coefficients of a spline.
+pub(super) fn of_plane(kernel: Kernel) -> Squares<f32> {
+    match kernel {
+        Kernel::Linear | Kernel::Area => linear_plane,
+        Kernel::Cubic => cubic_plane,
+        Kernel::Lanczos3 | Kernel::Spline => six_plane,
+        Kernel::Lanczos4 => eight_plane,
+    }
+}
+
+/// The index of a pixel in a line that is mirrored at the middles of its outermost pixels.
+pub(super) fn mirrored(index: i64, count: usize) -> usize {
+    let last = count.saturating_sub(1) as i64;
+    if last == 0 {
+        return 0;
+    }
+    let within = index.rem_euclid(2 * last);
+    (if within > last { 2 * last - within } else { within }) as usize
+}
+
+impl<T: Sample> Job<'_, T> {
+    /// A level of the picture, mirrored at its borders.
+    #[inline(never)]
+    fn mirrored(&self, column: i32, row: i32, channel: usize) -> T {
+        let ImageSize { width, height } = self.picture.size;
+        let (column, row) = (mirrored(i64::from(column), width as usize), mirrored(i64::from(row), height as usize));
+        let place = (row.wrapping_sub(self.picture.first)).wrapping_mul(self.picture.stride());
+        self.picture.samples.get(place.wrapping_add(column * self.picture.channels + channel)).copied().unwrap_or_default()
+    }
+
+    /// Whether columns and rows from a pixel on are all in the picture, so that nothing is mirrored.
+    #[inline(always)]
+    fn holds(&self, column: i32, row: i32, columns: usize, rows: usize) -> bool {
+        let ImageSize { width, height } = self.picture.size;
+        column >= 0 && row >= 0 && column as usize + columns <= width as usize && row as usize + rows <= height as usize
+    }
+
+    /// Where the first channel of a pixel that is there stands.
+    #[inline(always)]
+    fn place(&self, column: i32, row: i32, channels: usize) -> usize {
+        (row as usize).wrapping_sub(self.picture.first).wrapping_mul(self.picture.size.width as usize * channels).wrapping_add(column as usize * channels)
+    }
+
+    /// Walks over the rows of all squares, and hands the part of `into` that each row fills to `fill`.
+    #[inline(always)]
+    fn each_row<const CH: usize>(&self, into: &mut [T], mut fill: impl FnMut(&Cell, usize, &mut [T])) {
+        let width: usize = self.cells.iter().map(|cell| cell.size[0]).sum();
+        let mut left = 0;
+        for cell in self.cells {
+            for row in 0..cell.size[1] {
+                let begin = (row * width + left) * CH;
+                if let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) {
+                    fill(cell, row, into);
+                }
+            }
+            left += cell.size[0];
+        }
+    }
+
+    #[inline(always)]
+    fn run(&self, cell: &Cell, row: usize, shift: [f32; 2], run: &mut Run) {
+        cell.run(row, shift, self.source, run);
+        if self.offset != [0, 0] {
+            for i in 0..SIDE {
+                run.column[i] -= self.offset[0];
+                run.row[i] -= self.offset[1];
+            }
+        }
+    }
+}
+
+/// `CH` channels, `ROWS` x `ROWS` pixels, of which lines of `LANES` levels are read: `CH` times a power of two.
+#[inline(always)]
+fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: &Job<'_, T>, kernel: Kernel, into: &mut [T]) {
+    let (across, down) = (Table::<LANES>::new(kernel, CH), Table::<ROWS>::new(kernel, 1));
+    let mut run = Run::EMPTY;
+    job.each_row::<CH>(into, |cell, row, into| {
+        job.run(cell, row, [0.0; 2], &mut run);
+        if run.is_outside() {
+            into.fill(T::default());
+            return;
+        }
+        let mut levels = [[0.0_f32; CH]; SIDE];
+        for (i, levels) in levels.iter_mut().enumerate().take(run.count) {
+            if run.inside[i] {
+                *levels = pixel(job, &run, i, &across, &down);
+            }
+        }
+        for (into, levels) in into.as_chunks_mut::<CH>().0.iter_mut().zip(&levels) {
+            *into = levels.map(T::of_f32);
+        }
+    });
+}
+
+#[inline(always)]
+fn pixel<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(
+    job: &Job<'_, T>,
+    run: &Run,
+    i: usize,
+    across: &Table<LANES>,
+    down: &Table<ROWS>,
+) -> [f32; CH] {
+    let before = (ROWS / 2 - 1) as i32;
+    let (column, row) = (run.column[i] - before, run.row[i] - before);
+    let weights = down.at(run.down[i]);
+    let mut sums = [0.0_f32; LANES];
+    if job.holds(column, row, LANES / CH, ROWS) {
+        let stride = job.picture.size.width as usize * CH;
+        let mut begin = job.place(column, row, CH);
+        for weight in weights {
+            if let Some(line) = job.picture.samples.get(begin..).and_then(|rest| rest.first_chunk::<LANES>()) {
+                add(&mut sums, line, weight);
+            }
+            begin += stride;
+        }
+    } else {
+        for (down, weight) in (0..).zip(weights) {
+            let line: [T; LANES] = std::array::from_fn(|lane| job.mirrored(column + (lane / CH) as i32, row + down, lane % CH));
+            add(&mut sums, &line, weight);
+        }
+    }
+    let weights = across.at(run.right[i]);
+    for lane in 0..LANES {
+        sums[lane] *= weights[lane];
+    }
+    let mut half = LANES / 2;
+    while half >= CH {
+        for lane in 0..half {
+            sums[lane] += sums[lane + half];
+        }
+        half /= 2;
+    }
+    std::array::from_fn(|channel| sums[channel])
+}
+
+#[inline(always)]
+fn add<T: Sample, const LANES: usize>(sums: &mut [f32; LANES], line: &[T; LANES], weight: f32) {
+    for lane in 0..LANES {
+        sums[lane] += weight * line[lane].to_f32();
+    }
+}
+
+/// The 2 x 2 pixels around each place of a run, channel by channel.
+struct Corners<T>([[[T; SIDE]; 4]; CHANNELS]);
+
+/// 2 x 2 pixels; at several places in a pixel where means over its area are taken.
+#[inline(always)]
+fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, _: Kernel, into: &mut [T]) {
+    let mut run = Run::EMPTY;
+    let mut corners = Corners([[[T::default(); SIDE]; 4]; CHANNELS]);
+    job.each_row::<CH>(into, |cell, row, into| {
+        job.run(cell, row, [0.0; 2], &mut run);
+        if run.is_outside() {
+            into.fill(T::default());
+            return;
+        }
+        let mut levels = [[0.0_f32; SIDE]; CHANNELS];
+        gather::<T, CH>(job, &run, &mut corners);
+        for channel in 0..CH {
+            mix(&corners.0[channel], &run, &mut levels[channel]);
+        }
+        if job.area {
+            mean::<T, CH>(job, cell, row, &run.inside, &mut corners, &mut levels);
+        }
+        for channel in 0..CH {
+            for i in 0..SIDE {
+                levels[channel][i] = if run.inside[i] { levels[channel][i] } else { 0.0 };
+            }
+        }
+        let mut found = [[T::default(); SIDE]; CHANNELS];
+        for channel in 0..CH {
+            for i in 0..SIDE {
+                found[channel][i] = T::of_f32(levels[channel][i]);
+            }
+        }
+        for (i, into) in into.as_chunks_mut::<CH>().0.iter_mut().enumerate().take(SIDE) {
+            *into = std::array::from_fn(|channel| found[channel][i]);
+        }
+    });
+}
+
+#[inline(always)]
+fn gather<T: Sample, const CH: usize>(job: &Job<'_, T>, run: &Run, corners: &mut Corners<T>) {
+    let stride = job.picture.size.width as usize * CH;
+    for i in 0..run.count {
+        let (column, row) = (run.column[i], run.row[i]);
+        let place = job.place(column, row, CH);
+        let lines = [place, place.wrapping_add(stride)].map(|begin| job.picture.samples.get(begin..begin.wrapping_add(2 * CH)));
+        if let ([Some(above), Some(below)], true) = (lines, job.holds(column, row, 2, 2)) {
+            for channel in 0..CH {
+                let of = &mut corners.0[channel];
+                (of[0][i], of[1][i]) = (above[channel], above[CH + channel]);
+                (of[2][i], of[3][i]) = (below[channel], below[CH + channel]);
+            }
+        } else {
+            for channel in 0..CH {
+                for corner in 0..4_i32 {
+                    corners.0[channel][corner as usize][i] = job.mirrored(column + corner % 2, row + corner / 2, channel);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn mix<T: Sample>([a, b, c, d]: &[[T; SIDE]; 4], run: &Run, into: &mut [f32; SIDE]) {
+    for i in 0..SIDE {
+        let above = a[i].to_f32() + run.right[i] * (b[i].to_f32() - a[i].to_f32());
+        let below = c[i].to_f32() + run.right[i] * (d[i].to_f32() - c[i].to_f32());
+        into[i] = above + run.down[i] * (below - above);
+    }
+}
+
+/// Puts means over the area of a pixel in the place of its middle's levels, where the picture shrinks.
+#[inline(never)]
+fn mean<T: Sample, const CH: usize>(
+    job: &Job<'_, T>,
+    cell: &Cell,
+    row: usize,
+    inside: &[bool; SIDE],
+    corners: &mut Corners<T>,
+    levels: &mut [[f32; SIDE]; CHANNELS],
+) {
+    let [across, down] = cell.stretch.map(places);
+    if across.len() * down.len() == 1 {
+        return;
+    }
+    let (mut sums, mut count) = ([[0.0_f32; SIDE]; CHANNELS], [0.0_f32; SIDE]);
+    let mut run = Run::EMPTY;
+    for v in &down {
+        for u in &across {
+            job.run(cell, row, [*u, *v], &mut run);
+            gather::<T, CH>(job, &run, corners);
+            for channel in 0..CH {
+                let mut here = [0.0; SIDE];
+                mix(&corners.0[channel], &run, &mut here);
+                for i in 0..SIDE {
+                    sums[channel][i] += if run.inside[i] { here[i] } else { 0.0 };
+                }
+            }
+            for i in 0..SIDE {
+                count[i] += f32::from(u8::from(run.inside[i]));
+            }
+        }
+    }
+    for channel in 0..CH {
+        for i in (0..SIDE).filter(|i| inside[*i] && count[*i] > 0.0) {
+            levels[channel][i] = sums[channel][i] / count[i];
+        }
+    }
+}
+
+/// Places along a side of a pixel, from its middle, whose mean stands for the mean over it, where the source moves by `stretch` px from one pixel to the
+/// next. Linear interpolation is a mean over about a pixel of the source itself: the places spread so far that both together are as wide as the pixel.
+fn places(stretch: f32) -> Vec<f32> {
+    if stretch <= 1.0 {
+        return vec![0.0];
+    }
+    let width = (1.0 - 1.0 / (stretch * stretch)).sqrt();
+    let count = (2.0 * stretch * width).ceil().clamp(2.0, 64.0);
+    (0..count as usize).map(|i| width * ((i as f32 + 0.5) / count - 0.5)).collect()
+}
