@@ -60,8 +60,13 @@ impl Run {
         Self { count: 0, column: [0; SIDE], row: [0; SIDE], right: [0.0; SIDE], down: [0.0; SIDE], inside: [false; SIDE] };
 
     /// Whether none of its pixels lies in the source.
+    #[inline(always)]
     pub(crate) fn is_outside(&self) -> bool {
-        !self.inside[..self.count].contains(&true)
+        let mut any = false;
+        for i in 0..SIDE {
+            any |= self.inside[i];
+        }
+        !any
     }
 }
 
@@ -182,35 +187,28 @@ impl Cell {
     pub(crate) fn run(&self, row: usize, shift: [f32; 2], source: ImageSize, run: &mut Run) {
         run.count = self.size[0];
         let (mut x, mut y) = ([f32::NAN; SIDE], [f32::NAN; SIDE]);
-        let step = self.size.map(|count| 2.0 / (count.max(2) - 1) as f32);
         match &self.shape {
             Shape::Nothing => {
                 run.inside = [false; SIDE];
                 return;
             }
             Shape::Smooth([along_x, along_y]) => {
-                let v = (row as f32 + shift[1]) * step[1] - 1.0;
+                let (across, down) = (2.0 / (self.size[0].max(2) - 1) as f32, 2.0 / (self.size[1].max(2) - 1) as f32);
+                let v = (row as f32 + shift[1]) * down - 1.0;
                 let (a, b) = (row_of(along_x, f64::from(v)), row_of(along_y, f64::from(v)));
-                let begin = shift[0] * step[0] - 1.0;
+                let begin = shift[0] * across - 1.0;
                 for i in 0..SIDE {
-                    let u = i as f32 * step[0] + begin;
+                    let u = i as f32 * across + begin;
                     x[i] = polynomial(&a, u);
                     y[i] = polynomial(&b, u);
                 }
             }
-            Shape::Single(places) => {
-                let line = &places[row * self.size[0]..(row + 1) * self.size[0]];
-                for (i, at) in line.iter().enumerate() {
-                    let by = self.slopes(places, row, i);
-                    x[i] = at[0] + shift[0] * by[0][0] + shift[1] * by[1][0];
-                    y[i] = at[1] + shift[0] * by[0][1] + shift[1] * by[1][1];
-                }
-            }
+            Shape::Single(places) => self.single(places, row, shift, &mut x, &mut y),
         }
-        let low = self.base.map(|base| -0.5 - base as f32);
+        let low = [-0.5 - self.base[0] as f32, -0.5 - self.base[1] as f32];
         let high = [low[0] + source.width as f32, low[1] + source.height as f32];
         for i in 0..SIDE {
-            let inside = x[i] >= low[0] && x[i] <= high[0] && y[i] >= low[1] && y[i] <= high[1];
+            let inside = (x[i] >= low[0]) & (x[i] <= high[0]) & (y[i] >= low[1]) & (y[i] <= high[1]);
             let (place_x, place_y) = (if inside { x[i] } else { 0.0 }, if inside { y[i] } else { 0.0 });
             let (whole_x, whole_y) = (place_x.floor(), place_y.floor());
             run.column[i] = whole_x as i32 + self.base[0];
@@ -218,6 +216,17 @@ impl Cell {
             run.right[i] = place_x - whole_x;
             run.down[i] = place_y - whole_y;
             run.inside[i] = inside;
+        }
+    }
+
+    /// The places of a row of single ones.
+    #[inline(never)]
+    fn single(&self, places: &[[f32; 2]], row: usize, shift: [f32; 2], x: &mut [f32; SIDE], y: &mut [f32; SIDE]) {
+        let line = &places[row * self.size[0]..(row + 1) * self.size[0]];
+        for (i, at) in line.iter().enumerate() {
+            let by = self.slopes(places, row, i);
+            x[i] = at[0] + shift[0] * by[0][0] + shift[1] * by[1][0];
+            y[i] = at[1] + shift[0] * by[0][1] + shift[1] * by[1][1];
         }
     }
 
@@ -240,10 +249,12 @@ impl Cell {
 /// The coefficients of a row, `v` from -1 to 1.
 #[inline(always)]
 fn row_of(shape: &[[f32; 4]; 4], v: f64) -> [f32; 4] {
-    shape.map(|[a, b, c, d]| {
-        let [a, b, c, d] = [a, b, c, d].map(f64::from);
-        (a + v * (b + v * (c + v * d))) as f32
-    })
+    let mut row = [0.0; 4];
+    for power in 0..4 {
+        let [a, b, c, d] = shape[power];
+        row[power] = (f64::from(a) + v * (f64::from(b) + v * (f64::from(c) + v * f64::from(d)))) as f32;
+    }
+    row
 }
 
 #[inline(always)]

@@ -109,28 +109,40 @@ fn quintic(x: f64) -> f64 {
     terms.sum::<f64>() / 120.0
 }
 
-/// The weights of a kernel in [`STEPS`] steps between two pixels, as parabolas about the middle of each: `N` of them, of which the first [`Kernel::taps`]
-/// times `repeated` are not zero, each for `repeated` channels.
-pub(crate) struct Table<const N: usize>(Vec<[[f32; N]; 3]>);
+/// The weights of a kernel in [`STEPS`] steps between two pixels, as parabolas about the middle of each: `lanes` of them, of which the first
+/// [`Kernel::taps`] times `repeated` are not zero, each for `repeated` channels.
+pub(crate) struct Table(Vec<f32>);
 
-impl<const N: usize> Table<N> {
-    pub(crate) fn new(kernel: Kernel, repeated: usize) -> Self {
-        let row = |step: usize| {
+impl Table {
+    pub(crate) fn new(kernel: Kernel, repeated: usize, lanes: usize) -> Self {
+        let mut table = Vec::with_capacity(STEPS * 3 * lanes);
+        for step in 0..STEPS {
             let [begin, middle, end] = [0.0, 0.5, 1.0].map(|part| kernel.weights((step as f64 + part) / STEPS as f64));
-            let mut parabolas = [[0.0; N]; 3];
-            for lane in 0..N {
+            let parabola = |power: usize, lane: usize| {
                 let of = |weights: &[f64]| weights.get(lane / repeated).copied().unwrap_or(0.0);
                 let (a, b, c) = (of(&begin), of(&middle), of(&end));
-                (parabolas[0][lane], parabolas[1][lane], parabolas[2][lane]) = (b as f32, (c - a) as f32, (2.0 * (a + c) - 4.0 * b) as f32);
-            }
-            parabolas
-        };
-        Self((0..STEPS).map(row).collect())
+                [b, c - a, 2.0 * (a + c) - 4.0 * b][power] as f32
+            };
+            table.extend((0..3 * lanes).map(|i| parabola(i / lanes, i % lanes)));
+        }
+        Self(table)
     }
 
+    /// The table for its number of lanes.
+    #[inline(always)]
+    pub(crate) fn of<const N: usize>(&self) -> Lanes<'_, N> {
+        Lanes(self.0.as_chunks::<N>().0.as_chunks::<3>().0)
+    }
+}
+
+/// A table of `N` lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<'t, const N: usize>(&'t [[[f32; N]; 3]]);
+
+impl<const N: usize> Lanes<'_, N> {
     /// The weights at a fraction from 0 to 1.
     #[inline(always)]
-    pub(crate) fn at(&self, fraction: f32) -> [f32; N] {
+    pub(crate) fn at(self, fraction: f32) -> [f32; N] {
         let place = fraction * STEPS as f32;
         let step = (place as usize).min(STEPS - 1);
         let off = place - step as f32 - 0.5;
@@ -195,11 +207,11 @@ mod tests {
     #[test]
     fn a_table_is_as_good_as_the_formula() {
         for kernel in Kernel::ALL {
-            let table = Table::<8>::new(kernel, 1);
+            let table = Table::new(kernel, 1, 8);
             for i in 0..=5000_u16 {
                 let fraction = f32::from(i) / 5000.0;
                 let expected = kernel.weights(f64::from(fraction));
-                let found = table.at(fraction);
+                let found = table.of::<8>().at(fraction);
                 for (tap, weight) in found.iter().enumerate() {
                     let expected = expected.get(tap).copied().unwrap_or(0.0);
                     assert!((f64::from(*weight) - expected).abs() < 3e-7, "{kernel} at {fraction}: {weight} {expected}");

@@ -8,7 +8,7 @@ mod write;
 use calibench_model::camera::ImageSize;
 
 pub use read::Opened;
-pub use write::{PictureKind, PictureWriter, WriteOptions};
+pub use write::{PictureKind, WriteOptions, write_picture};
 
 /// Levels of a picture, row by row, the channels of a pixel beside each other.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -72,94 +72,76 @@ pub struct WriteOptions {
     pub quality: u8,
 }
 
-enum Output<'w> {
-    Png(Box<png::StreamWriter<'static, &'w mut dyn Write>>),
-    Tiff(&'w mut dyn Write),
-    Jpeg { output: &'w mut dyn Write, quality: u8, levels: Vec<u8>, about: About },
-}
-
-/// A picture that is being written.
-pub struct PictureWriter<'w> {
+/// Writes a picture, upright, that says of itself what `about` does, but for its size. `fill` is handed what takes its rows, one part after the other.
+///
+/// # Errors
+/// A picture that the kind of file refuses, rows that are missing, what the output refuses and what `fill` returns.
+pub fn write_picture<E: From<io::Error>>(
+    output: &mut dyn Write,
     form: PictureForm,
-    output: Output<'w>,
+    about: &About,
+    options: WriteOptions,
+    fill: impl FnOnce(&mut dyn FnMut(&PictureLevels) -> io::Result<()>) -> Result<(), E>,
+) -> Result<(), E> {
+    if let Some(why) = options.kind.refuses(form) {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, why).into());
+    }
+    let size = [form.size.width, form.size.height];
+    let about = About {
+        exif: about.exif.as_deref().and_then(|block| exif::of_picture(block, size)),
+        profile: about.profile.clone().filter(|profile| is_profile_of(profile, form.channels)),
+    };
+    let stride = form.stride().max(1);
+    match options.kind {
+        PictureKind::Png => {
+            let mut writer = begun_png(output, form, &about)?;
+            let mut stream = writer.stream_writer_with_size(STRIP).map_err(io::Error::other)?;
+            fill(&mut |levels| match levels {
+                PictureLevels::Bytes(levels) => stream.write_all(levels),
+                PictureLevels::Words(levels) => levels.chunks(stride).try_for_each(|line| stream.write_all(&bytes(line, u16::to_be_bytes))),
+            })?;
+            stream.finish().map_err(io::Error::other)?;
+            Ok(writer.finish().map_err(io::Error::other)?)
+        }
+        PictureKind::Tiff => {
+            output.write_all(&tiff_head(form, &about))?;
+            fill(&mut |levels| match levels {
+                PictureLevels::Bytes(levels) => output.write_all(levels),
+                PictureLevels::Words(levels) => levels.chunks(stride).try_for_each(|line| output.write_all(&bytes(line, u16::to_le_bytes))),
+            })
+        }
+        PictureKind::Jpeg => {
+            let mut all = Vec::new();
+            fill(&mut |levels| match levels {
+                PictureLevels::Bytes(levels) => {
+                    all.extend(levels);
+                    Ok(())
+                }
+                PictureLevels::Words(_) => Err(io::ErrorKind::InvalidInput.into()),
+            })?;
+            Ok(write_jpeg(output, form, about, options.quality, &all)?)
+        }
+    }
 }
 
-impl<'w> PictureWriter<'w> {
-    /// Begins a picture, upright, that says of itself what `about` does, but for its size.
-    ///
-    /// # Errors
-    /// A picture that the kind of file refuses, what the output refuses.
-    pub fn new(output: &'w mut dyn Write, form: PictureForm, about: &About, options: WriteOptions) -> io::Result<Self> {
-        if let Some(why) = options.kind.refuses(form) {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-        }
-        let size = [form.size.width, form.size.height];
-        let about = About {
-            exif: about.exif.as_deref().and_then(|block| exif::of_picture(block, size)),
-            profile: about.profile.clone().filter(|profile| is_profile_of(profile, form.channels)),
-        };
-        let output = match options.kind {
-            PictureKind::Png => Output::Png(Box::new(begun_png(output, form, &about)?)),
-            PictureKind::Tiff => {
-                output.write_all(&tiff_head(form, &about))?;
-                Output::Tiff(output)
-            }
-            PictureKind::Jpeg => Output::Jpeg { output, quality: options.quality, levels: Vec::new(), about },
-        };
-        Ok(Self { form, output })
+fn write_jpeg(output: &mut dyn Write, form: PictureForm, about: About, quality: u8, levels: &[u8]) -> io::Result<()> {
+    let colour = if form.channels == 1 { ExtendedColorType::L8 } else { ExtendedColorType::Rgb8 };
+    let mut file = Vec::new();
+    let mut encoder = JpegEncoder::new_with_quality(Cursor::new(&mut file), quality);
+    if let Some(profile) = about.profile {
+        encoder.set_icc_profile(profile).map_err(io::Error::other)?;
     }
-
-    /// Writes the next rows.
-    ///
-    /// # Errors
-    /// What the output refuses.
-    pub fn write(&mut self, levels: &PictureLevels) -> io::Result<()> {
-        match (&mut self.output, levels) {
-            (Output::Png(stream), PictureLevels::Bytes(levels)) => stream.write_all(levels),
-            (Output::Png(stream), PictureLevels::Words(levels)) => {
-                levels.chunks(self.form.stride().max(1)).try_for_each(|line| stream.write_all(&bytes(line, u16::to_be_bytes)))
-            }
-            (Output::Tiff(output), PictureLevels::Bytes(levels)) => output.write_all(levels),
-            (Output::Tiff(output), PictureLevels::Words(levels)) => {
-                levels.chunks(self.form.stride().max(1)).try_for_each(|line| output.write_all(&bytes(line, u16::to_le_bytes)))
-            }
-            (Output::Jpeg { levels: all, .. }, PictureLevels::Bytes(levels)) => {
-                all.extend(levels);
-                Ok(())
-            }
-            (Output::Jpeg { .. }, PictureLevels::Words(_)) => Err(io::ErrorKind::InvalidInput.into()),
-        }
+    encoder.write_image(levels, form.size.width, form.size.height, colour).map_err(io::Error::other)?;
+    // Behind the mark of the beginning.
+    let (mark, rest) = file.split_at(2.min(file.len()));
+    output.write_all(mark)?;
+    if let Some(exif) = about.exif.filter(|block| block.len() + EXIF_HEAD.len() + 2 <= SEGMENT) {
+        output.write_all(&[0xff, 0xe1])?;
+        output.write_all(&((exif.len() + EXIF_HEAD.len() + 2) as u16).to_be_bytes())?;
+        output.write_all(EXIF_HEAD)?;
+        output.write_all(&exif)?;
     }
-
-    /// Ends the picture.
-    ///
-    /// # Errors
-    /// Rows that are missing, what the output refuses.
-    pub fn finish(self) -> io::Result<()> {
-        match self.output {
-            Output::Png(stream) => stream.finish().map_err(io::Error::other),
-            Output::Tiff(output) => output.flush(),
-            Output::Jpeg { output, quality, levels, about } => {
-                let colour = if self.form.channels == 1 { ExtendedColorType::L8 } else { ExtendedColorType::Rgb8 };
-                let mut file = Vec::new();
-                let mut encoder = JpegEncoder::new_with_quality(Cursor::new(&mut file), quality);
-                if let Some(profile) = about.profile {
-                    encoder.set_icc_profile(profile).map_err(io::Error::other)?;
-                }
-                encoder.write_image(&levels, self.form.size.width, self.form.size.height, colour).map_err(io::Error::other)?;
-                // Behind the mark of the beginning.
-                let (mark, rest) = file.split_at(2.min(file.len()));
-                output.write_all(mark)?;
-                if let Some(exif) = about.exif.filter(|block| block.len() + EXIF_HEAD.len() + 2 <= SEGMENT) {
-                    output.write_all(&[0xff, 0xe1])?;
-                    output.write_all(&((exif.len() + EXIF_HEAD.len() + 2) as u16).to_be_bytes())?;
-                    output.write_all(EXIF_HEAD)?;
-                    output.write_all(&exif)?;
-                }
-                output.write_all(rest)
-            }
-        }
-    }
+    output.write_all(rest)
 }
 
 fn bytes(levels: &[u16], of: fn(u16) -> [u8; 2]) -> Vec<u8> {
@@ -171,7 +153,7 @@ fn is_profile_of(profile: &[u8], channels: usize) -> bool {
     matches!((profile.get(16..20), channels), (Some(b"GRAY"), 1 | 2) | (Some(b"RGB "), 3 | 4))
 }
 
-fn begun_png<'w>(output: &'w mut dyn Write, form: PictureForm, about: &About) -> io::Result<png::StreamWriter<'static, &'w mut dyn Write>> {
+fn begun_png<'w>(output: &'w mut dyn Write, form: PictureForm, about: &About) -> io::Result<png::Writer<&'w mut dyn Write>> {
     let mut info = png::Info::with_size(form.size.width, form.size.height);
     info.color_type = match form.channels {
         1 => png::ColorType::Grayscale,
@@ -184,7 +166,7 @@ fn begun_png<'w>(output: &'w mut dyn Write, form: PictureForm, about: &About) ->
     info.icc_profile = about.profile.clone().map(Cow::Owned);
     let mut encoder = png::Encoder::with_info(output, info).map_err(io::Error::other)?;
     encoder.set_compression(png::Compression::Fast);
-    encoder.write_header().map_err(io::Error::other)?.into_stream_writer_with_size(STRIP).map_err(io::Error::other)
+    encoder.write_header().map_err(io::Error::other)
 }
 
 /// All of a TIFF but its pixels, which follow.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::kernel::Kernel;
 use crate::map::Map;
 use crate::picture::{Picture, PictureError, Sample};
-use squares::Job;
+use squares::{Job, Weights};
 
 /// Rows of the source that a kernel asks for above and below the places of a map.
 pub fn reach(kernel: Kernel, map: &Map) -> usize {
@@ -44,10 +44,11 @@ pub fn resample<T: Level>(map: &Map, kernel: Kernel, picture: &Picture<'_, T>, r
     let Some(squares) = T::squares(kernel, picture.channels) else {
         return planes::resample(map, kernel, picture, rows, into);
     };
+    let weights = Weights::new(kernel, picture.channels);
     into.par_chunks_mut(Map::BAND * stride).enumerate().for_each(|(band, into)| {
         let row = rows.start + band * Map::BAND;
-        let job = Job { cells: map.cells(row), source: map.source(), picture: *picture, offset: [0, 0], area: kernel == Kernel::Area };
-        squares(&job, kernel, into);
+        let job = Job { cells: map.cells(row), source: map.source(), picture: *picture, offset: [0, 0], weights: &weights };
+        squares(&job, into);
     });
     Ok(())
 }

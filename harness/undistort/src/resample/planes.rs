@@ -5,7 +5,7 @@ use std::ops::Range;
 use calibench_model::camera::ImageSize;
 use rayon::prelude::*;
 
-use super::{Job, Level, reach, spline, squares};
+use super::{Job, Level, Weights, reach, spline, squares};
 use crate::cell::{Cell, SIDE};
 use crate::kernel::Kernel;
 use crate::map::Map;
@@ -31,7 +31,7 @@ pub(super) fn resample<T: Level>(
     into: &mut [T],
 ) -> Result<(), PictureError> {
     let (width, channels) = (map.size().width as usize, picture.channels);
-    let stride = width * channels;
+    let (stride, weights) = (width * channels, Weights::new(kernel, 1));
     for (i, into) in into.chunks_mut(BLOCK * SIDE * stride).enumerate() {
         let first = rows.start + i * BLOCK * SIDE;
         let last = first + into.len() / stride.max(1);
@@ -41,7 +41,7 @@ pub(super) fn resample<T: Level>(
             Block { bands, columns: cells.start * SIDE..(cells.end * SIDE).min(width) }
         };
         let blocks: Vec<Block<'_>> = (0..width.div_ceil(SIDE)).step_by(BLOCK).map(block).collect();
-        let made: Vec<Vec<T>> = blocks.par_iter().map(|block| block.made(map, kernel, picture)).collect();
+        let made: Vec<Vec<T>> = blocks.par_iter().map(|block| block.made(map, (kernel, &weights), picture)).collect();
         for (block, made) in blocks.iter().zip(made) {
             let (left, part) = (block.columns.start * channels, block.columns.len() * channels);
             for (into, made) in into.chunks_exact_mut(stride).zip(made.chunks_exact(part)) {
@@ -54,7 +54,7 @@ pub(super) fn resample<T: Level>(
 
 impl Block<'_> {
     /// Its levels, row by row.
-    fn made<T: Level>(&self, map: &Map, kernel: Kernel, picture: &Picture<'_, T>) -> Vec<T> {
+    fn made<T: Level>(&self, map: &Map, (kernel, weights): (Kernel, &Weights), picture: &Picture<'_, T>) -> Vec<T> {
         let rows: usize = self.bands.iter().filter_map(|band| band.first()).map(|cell| cell.size[1]).sum();
         let (pixels, channels) = (rows * self.columns.len(), picture.channels);
         let mut made = vec![T::default(); pixels * channels];
@@ -74,8 +74,8 @@ impl Block<'_> {
                 let band = self.columns.len() * cells.first().map_or(0, |cell| cell.size[1]);
                 let (into, behind) = rest.split_at_mut(band);
                 let offset = [columns.start as i32, lines.start as i32];
-                let job = Job { cells, source: map.source(), picture, offset, area: kernel == Kernel::Area };
-                loop_of(&job, kernel, into);
+                let job = Job { cells, source: map.source(), picture, offset, weights };
+                loop_of(&job, into);
                 rest = behind;
             }
         }

@@ -3,7 +3,7 @@
 use calibench_model::camera::ImageSize;
 
 use crate::cell::{Cell, Run, SIDE};
-use crate::kernel::{Kernel, Table};
+use crate::kernel::{Kernel, Lanes, Table};
 use crate::picture::{Picture, Sample};
 
 /// Squares side by side, and what they are made from.
@@ -14,12 +14,28 @@ pub(super) struct Job<'a, T> {
     /// The source, or a part of it that begins at `offset`.
     pub(super) picture: Picture<'a, T>,
     pub(super) offset: [i32; 2],
+    pub(super) weights: &'a Weights,
+}
+
+/// What a kernel needs, made once.
+pub(super) struct Weights {
+    /// Of columns, for each channel, and of rows.
+    across: Table,
+    down: Table,
     /// Whether means over the area of a pixel are taken.
-    pub(super) area: bool,
+    area: bool,
+}
+
+impl Weights {
+    pub(super) fn new(kernel: Kernel, channels: usize) -> Self {
+        // Lines of a power of two.
+        let across = Table::new(kernel, channels, kernel.taps().next_power_of_two() * channels);
+        Self { across, down: Table::new(kernel, 1, kernel.taps()), area: kernel == Kernel::Area }
+    }
 }
 
 /// Fills rows of squares, as many as they have.
-pub(super) type Squares<T> = fn(&Job<'_, T>, Kernel, &mut [T]);
+pub(super) type Squares<T> = fn(&Job<'_, T>, &mut [T]);
 
 /// Levels for which there are loops.
 pub trait Sampled: Sized {
@@ -39,8 +55,8 @@ macro_rules! loops {
                 not(any(test, debug_assertions)),
                 multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))
             )]
-            fn $name(job: &Job<'_, $level>, kernel: Kernel, into: &mut [$level]) {
-                $inner::<$level, $($number),*>(job, kernel, into);
+            fn $name(job: &Job<'_, $level>, into: &mut [$level]) {
+                $inner::<$level, $($number),*>(job, into);
             }
         )*
     };
@@ -122,13 +138,16 @@ pub(super) fn mirrored(index: i64, count: usize) -> usize {
 }
 
 impl<T: Sample> Job<'_, T> {
-    /// A level of the picture, mirrored at its borders.
+    /// Levels of a row from a column on, mirrored at the borders.
     #[inline(never)]
-    fn mirrored(&self, column: i32, row: i32, channel: usize) -> T {
+    fn mirrored_line<const CH: usize>(&self, column: i32, row: i32, into: &mut [T]) {
         let ImageSize { width, height } = self.picture.size;
-        let (column, row) = (mirrored(i64::from(column), width as usize), mirrored(i64::from(row), height as usize));
-        let place = (row.wrapping_sub(self.picture.first)).wrapping_mul(self.picture.stride());
-        self.picture.samples.get(place.wrapping_add(column * self.picture.channels + channel)).copied().unwrap_or_default()
+        let row = mirrored(i64::from(row), height as usize);
+        let begin = row.wrapping_sub(self.picture.first).wrapping_mul(self.picture.stride());
+        for (lane, into) in into.iter_mut().enumerate() {
+            let column = mirrored(i64::from(column) + (lane / CH) as i64, width as usize);
+            *into = self.picture.samples.get(begin.wrapping_add(column * CH + lane % CH)).copied().unwrap_or_default();
+        }
     }
 
     /// Whether columns and rows from a pixel on are all in the picture, so that nothing is mirrored.
@@ -144,20 +163,9 @@ impl<T: Sample> Job<'_, T> {
         (row as usize).wrapping_sub(self.picture.first).wrapping_mul(self.picture.size.width as usize * channels).wrapping_add(column as usize * channels)
     }
 
-    /// Walks over the rows of all squares, and hands the part of `into` that each row fills to `fill`.
-    #[inline(always)]
-    fn each_row<const CH: usize>(&self, into: &mut [T], mut fill: impl FnMut(&Cell, usize, &mut [T])) {
-        let width: usize = self.cells.iter().map(|cell| cell.size[0]).sum();
-        let mut left = 0;
-        for cell in self.cells {
-            for row in 0..cell.size[1] {
-                let begin = (row * width + left) * CH;
-                if let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) {
-                    fill(cell, row, into);
-                }
-            }
-            left += cell.size[0];
-        }
+    /// Columns of all squares together.
+    fn width(&self) -> usize {
+        self.cells.iter().map(|cell| cell.size[0]).sum()
     }
 
     #[inline(always)]
@@ -172,27 +180,47 @@ impl<T: Sample> Job<'_, T> {
     }
 }
 
+// Closures of any size would be compiled for the least of machines: in what follows there are none.
+
 /// `CH` channels, `ROWS` x `ROWS` pixels, of which lines of `LANES` levels are read: `CH` times a power of two.
 #[inline(always)]
-fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: &Job<'_, T>, kernel: Kernel, into: &mut [T]) {
-    let (across, down) = (Table::<LANES>::new(kernel, CH), Table::<ROWS>::new(kernel, 1));
-    let mut run = Run::EMPTY;
-    job.each_row::<CH>(into, |cell, row, into| {
-        job.run(cell, row, [0.0; 2], &mut run);
-        if run.is_outside() {
-            into.fill(T::default());
-            return;
-        }
-        let mut levels = [[0.0_f32; CH]; SIDE];
-        for (i, levels) in levels.iter_mut().enumerate().take(run.count) {
-            if run.inside[i] {
-                *levels = pixel(job, &run, i, &across, &down);
+fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: &Job<'_, T>, into: &mut [T]) {
+    let (across, down) = (job.weights.across.of::<LANES>(), job.weights.down.of::<ROWS>());
+    let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
+    let mut sums = [[0.0_f32; LANES]; SIDE];
+    for cell in job.cells {
+        for row in 0..cell.size[1] {
+            let begin = (row * width + left) * CH;
+            let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
+            job.run(cell, row, [0.0; 2], &mut run);
+            if run.is_outside() {
+                into.fill(T::default());
+                continue;
+            }
+            for i in 0..run.count.min(SIDE) {
+                if run.inside[i] {
+                    pixel::<T, CH, ROWS, LANES>(job, &run, i, across, down, &mut sums[i]);
+                } else {
+                    sums[i] = [0.0; LANES];
+                }
+            }
+            let into = into.as_chunks_mut::<CH>().0;
+            for i in 0..into.len().min(SIDE) {
+                let mut half = LANES / 2;
+                let mut sums = sums[i];
+                while half >= CH {
+                    for lane in 0..half {
+                        sums[lane] += sums[lane + half];
+                    }
+                    half /= 2;
+                }
+                for channel in 0..CH {
+                    into[i][channel] = T::of_f32(sums[channel]);
+                }
             }
         }
-        for (into, levels) in into.as_chunks_mut::<CH>().0.iter_mut().zip(&levels) {
-            *into = levels.map(T::of_f32);
-        }
-    });
+        left += cell.size[0];
+    }
 }
 
 #[inline(always)]
@@ -200,46 +228,40 @@ fn pixel<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(
     job: &Job<'_, T>,
     run: &Run,
     i: usize,
-    across: &Table<LANES>,
-    down: &Table<ROWS>,
-) -> [f32; CH] {
+    across: Lanes<'_, LANES>,
+    down: Lanes<'_, ROWS>,
+    into: &mut [f32; LANES],
+) {
     let before = (ROWS / 2 - 1) as i32;
     let (column, row) = (run.column[i] - before, run.row[i] - before);
     let weights = down.at(run.down[i]);
-    let mut sums = [0.0_f32; LANES];
-    if job.holds(column, row, LANES / CH, ROWS) {
-        let stride = job.picture.size.width as usize * CH;
-        let mut begin = job.place(column, row, CH);
-        for weight in weights {
-            if let Some(line) = job.picture.samples.get(begin..).and_then(|rest| rest.first_chunk::<LANES>()) {
-                add(&mut sums, line, weight);
+    let stride = job.picture.size.width as usize * CH;
+    let begin = job.place(column, row, CH);
+    let end = begin.wrapping_add((ROWS - 1) * stride + LANES);
+    let mut lines = [[T::default(); LANES]; ROWS];
+    match job.picture.samples.get(begin..end) {
+        Some(window) if job.holds(column, row, LANES / CH, ROWS) => {
+            for tap in 0..ROWS {
+                if let Some(line) = window.get(tap * stride..).and_then(<[T]>::first_chunk::<LANES>) {
+                    lines[tap] = *line;
+                }
             }
-            begin += stride;
         }
-    } else {
-        for (down, weight) in (0..).zip(weights) {
-            let line: [T; LANES] = std::array::from_fn(|lane| job.mirrored(column + (lane / CH) as i32, row + down, lane % CH));
-            add(&mut sums, &line, weight);
+        _ => {
+            for tap in 0..ROWS {
+                job.mirrored_line::<CH>(column, row + tap as i32, &mut lines[tap]);
+            }
         }
     }
-    let weights = across.at(run.right[i]);
+    let across = across.at(run.right[i]);
+    let mut sums = [0.0_f32; LANES];
+    for tap in 0..ROWS {
+        for lane in 0..LANES {
+            sums[lane] += weights[tap] * lines[tap][lane].to_f32();
+        }
+    }
     for lane in 0..LANES {
-        sums[lane] *= weights[lane];
-    }
-    let mut half = LANES / 2;
-    while half >= CH {
-        for lane in 0..half {
-            sums[lane] += sums[lane + half];
-        }
-        half /= 2;
-    }
-    std::array::from_fn(|channel| sums[channel])
-}
-
-#[inline(always)]
-fn add<T: Sample, const LANES: usize>(sums: &mut [f32; LANES], line: &[T; LANES], weight: f32) {
-    for lane in 0..LANES {
-        sums[lane] += weight * line[lane].to_f32();
+        into[lane] = sums[lane] * across[lane];
     }
 }
 
@@ -248,57 +270,69 @@ struct Corners<T>([[[T; SIDE]; 4]; CHANNELS]);
 
 /// 2 x 2 pixels; at several places in a pixel where means over its area are taken.
 #[inline(always)]
-fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, _: Kernel, into: &mut [T]) {
-    let mut run = Run::EMPTY;
+fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
+    let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
     let mut corners = Corners([[[T::default(); SIDE]; 4]; CHANNELS]);
-    job.each_row::<CH>(into, |cell, row, into| {
-        job.run(cell, row, [0.0; 2], &mut run);
-        if run.is_outside() {
-            into.fill(T::default());
-            return;
-        }
-        let mut levels = [[0.0_f32; SIDE]; CHANNELS];
-        gather::<T, CH>(job, &run, &mut corners);
-        for channel in 0..CH {
-            mix(&corners.0[channel], &run, &mut levels[channel]);
-        }
-        if job.area {
-            mean::<T, CH>(job, cell, row, &run.inside, &mut corners, &mut levels);
-        }
-        for channel in 0..CH {
-            for i in 0..SIDE {
-                levels[channel][i] = if run.inside[i] { levels[channel][i] } else { 0.0 };
+    for cell in job.cells {
+        for row in 0..cell.size[1] {
+            let begin = (row * width + left) * CH;
+            let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
+            job.run(cell, row, [0.0; 2], &mut run);
+            if run.is_outside() {
+                into.fill(T::default());
+                continue;
+            }
+            let mut levels = [[0.0_f32; SIDE]; CHANNELS];
+            gather::<T, CH>(job, &run, &mut corners);
+            for channel in 0..CH {
+                mix(&corners.0[channel], &run, &mut levels[channel]);
+            }
+            if job.weights.area {
+                mean::<T, CH>(job, cell, row, &run.inside, &mut corners, &mut levels);
+            }
+            let mut found = [[T::default(); SIDE]; CHANNELS];
+            for channel in 0..CH {
+                for i in 0..SIDE {
+                    let level = if run.inside[i] { levels[channel][i] } else { 0.0 };
+                    found[channel][i] = T::of_f32(level);
+                }
+            }
+            let into = into.as_chunks_mut::<CH>().0;
+            for i in 0..into.len().min(SIDE) {
+                for channel in 0..CH {
+                    into[i][channel] = found[channel][i];
+                }
             }
         }
-        let mut found = [[T::default(); SIDE]; CHANNELS];
-        for channel in 0..CH {
-            for i in 0..SIDE {
-                found[channel][i] = T::of_f32(levels[channel][i]);
-            }
-        }
-        for (i, into) in into.as_chunks_mut::<CH>().0.iter_mut().enumerate().take(SIDE) {
-            *into = std::array::from_fn(|channel| found[channel][i]);
-        }
-    });
+        left += cell.size[0];
+    }
 }
 
 #[inline(always)]
 fn gather<T: Sample, const CH: usize>(job: &Job<'_, T>, run: &Run, corners: &mut Corners<T>) {
     let stride = job.picture.size.width as usize * CH;
-    for i in 0..run.count {
+    for i in 0..run.count.min(SIDE) {
         let (column, row) = (run.column[i], run.row[i]);
         let place = job.place(column, row, CH);
-        let lines = [place, place.wrapping_add(stride)].map(|begin| job.picture.samples.get(begin..begin.wrapping_add(2 * CH)));
-        if let ([Some(above), Some(below)], true) = (lines, job.holds(column, row, 2, 2)) {
-            for channel in 0..CH {
-                let of = &mut corners.0[channel];
-                (of[0][i], of[1][i]) = (above[channel], above[CH + channel]);
-                (of[2][i], of[3][i]) = (below[channel], below[CH + channel]);
+        match job.picture.samples.get(place..place.wrapping_add(stride + 2 * CH)) {
+            Some(window) if job.holds(column, row, 2, 2) => {
+                let below = &window[window.len() - 2 * CH..];
+                for channel in 0..CH {
+                    let of = &mut corners.0[channel];
+                    of[0][i] = window[channel];
+                    of[1][i] = window[CH + channel];
+                    of[2][i] = below[channel];
+                    of[3][i] = below[CH + channel];
+                }
             }
-        } else {
-            for channel in 0..CH {
-                for corner in 0..4_i32 {
-                    corners.0[channel][corner as usize][i] = job.mirrored(column + corner % 2, row + corner / 2, channel);
+            _ => {
+                for line in 0..2 {
+                    let mut two = [[T::default(); CH]; 2];
+                    job.mirrored_line::<CH>(column, row + line as i32, two.as_flattened_mut());
+                    for channel in 0..CH {
+                        corners.0[channel][2 * line][i] = two[0][channel];
+                        corners.0[channel][2 * line + 1][i] = two[1][channel];
+                    }
                 }
             }
         }
