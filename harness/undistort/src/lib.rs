@@ -8,6 +8,7 @@ mod frame;
 mod kernel;
 mod map;
 mod picture;
+mod points;
 mod resample;
 mod view;
 

@@ -160,7 +160,7 @@ impl<T: Sample> Job<'_, T> {
     /// Where the first channel of a pixel that is there stands.
     #[inline(always)]
     fn place(&self, column: i32, row: i32, channels: usize) -> usize {
-        (row as usize).wrapping_sub(self.picture.first).wrapping_mul(self.picture.size.width as usize * channels).wrapping_add(column as usize * channels)
+        (row as usize).wrapping_sub(self.picture.first).wrapping_mul(self.picture.size.width as usize * channels).wrapping_add((column as usize).wrapping_mul(channels))
     }
 
     /// Columns of all squares together.
