@@ -210,11 +210,11 @@ impl Cell {
         for i in 0..SIDE {
             let inside = (x[i] >= low[0]) & (x[i] <= high[0]) & (y[i] >= low[1]) & (y[i] <= high[1]);
             let (place_x, place_y) = (if inside { x[i] } else { 0.0 }, if inside { y[i] } else { 0.0 });
-            let (whole_x, whole_y) = (place_x.floor(), place_y.floor());
-            run.column[i] = whole_x as i32 + self.base[0];
-            run.row[i] = whole_y as i32 + self.base[1];
-            run.right[i] = place_x - whole_x;
-            run.down[i] = place_y - whole_y;
+            let ((column, right), (row, down)) = (parted(place_x), parted(place_y));
+            run.column[i] = column + self.base[0];
+            run.row[i] = row + self.base[1];
+            run.right[i] = right;
+            run.down[i] = down;
             run.inside[i] = inside;
         }
     }
@@ -244,6 +244,18 @@ impl Cell {
             if height > 1 { difference(at(above, column), at(above + 1, column)) } else { [0.0; 2] },
         ]
     }
+}
+
+/// What rounds a number of single precision below 2^22 when added: 1.5 * 2^23.
+const ROUND: f32 = 12_582_912.0;
+
+/// The whole number at or before another one, and how far behind it that is, 0 to 1. Neither a cast, which is taken apart into those of single numbers, nor
+/// `floor`, which older machines call a function for.
+#[inline(always)]
+pub(crate) fn parted(value: f32) -> (i32, f32) {
+    let shifted = value + ROUND;
+    let (near, off) = (shifted.to_bits().wrapping_sub(ROUND.to_bits()) as i32, value - (shifted - ROUND));
+    if off < 0.0 { (near - 1, off + 1.0) } else { (near, off) }
 }
 
 /// The coefficients of a row, `v` from -1 to 1.

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::cell::parted;
+
 /// Steps of a table of weights between two pixels; within a step weights are interpolated by parabolas, which is right to 1e-7.
 const STEPS: usize = 128;
 
@@ -140,20 +142,25 @@ impl Table {
 pub(crate) struct Lanes<'t, const N: usize>(&'t [[[f32; N]; 3]]);
 
 impl<const N: usize> Lanes<'_, N> {
-    /// The weights at a fraction from 0 to 1.
+    /// The weights within a step, `off` its middle.
     #[inline(always)]
-    pub(crate) fn at(self, fraction: f32) -> [f32; N] {
-        let place = fraction * STEPS as f32;
-        let step = (place as usize).min(STEPS - 1);
-        let off = place - step as f32 - 0.5;
+    pub(crate) fn at(self, (step, off): (u32, f32)) -> [f32; N] {
         let mut weights = [0.0; N];
-        if let Some([a, b, c]) = self.0.get(step) {
+        if let Some([a, b, c]) = self.0.get(step as usize) {
             for lane in 0..N {
                 weights[lane] = a[lane] + off * (b[lane] + off * c[lane]);
             }
         }
         weights
     }
+}
+
+/// The step of a fraction from 0 to 1, and how far it is off its middle.
+#[inline(always)]
+pub(crate) fn step(fraction: f32) -> (u32, f32) {
+    let (whole, part) = parted(fraction * STEPS as f32);
+    // A whole pixel is the end of the last step.
+    if whole as u32 >= STEPS as u32 { (STEPS as u32 - 1, 0.5) } else { (whole as u32, part - 0.5) }
 }
 
 #[cfg(test)]
@@ -211,7 +218,7 @@ mod tests {
             for i in 0..=5000_u16 {
                 let fraction = f32::from(i) / 5000.0;
                 let expected = kernel.weights(f64::from(fraction));
-                let found = table.of::<8>().at(fraction);
+                let found = table.of::<8>().at(step(fraction));
                 for (tap, weight) in found.iter().enumerate() {
                     let expected = expected.get(tap).copied().unwrap_or(0.0);
                     assert!((f64::from(*weight) - expected).abs() < 3e-7, "{kernel} at {fraction}: {weight} {expected}");

@@ -3,7 +3,7 @@
 use calibench_model::camera::ImageSize;
 
 use crate::cell::{Cell, Run, SIDE};
-use crate::kernel::{Kernel, Lanes, Table};
+use crate::kernel::{Kernel, Table, step};
 use crate::picture::{Picture, Sample};
 
 /// Squares side by side, and what they are made from.
@@ -150,17 +150,31 @@ impl<T: Sample> Job<'_, T> {
         }
     }
 
-    /// Whether columns and rows from a pixel on are all in the picture, so that nothing is mirrored.
+    /// Where the levels begin that the pixels of a run ask for: `before` of `rows` rows and columns above and to the left of each, in lines of `lanes` levels;
+    /// from the first level of what is returned. `None` if some are beyond the border.
     #[inline(always)]
-    fn holds(&self, column: i32, row: i32, columns: usize, rows: usize) -> bool {
-        let ImageSize { width, height } = self.picture.size;
-        column >= 0 && row >= 0 && column as usize + columns <= width as usize && row as usize + rows <= height as usize
-    }
-
-    /// Where the first channel of a pixel that is there stands.
-    #[inline(always)]
-    fn place(&self, column: i32, row: i32, channels: usize) -> usize {
-        (row as usize).wrapping_sub(self.picture.first).wrapping_mul(self.picture.size.width as usize * channels).wrapping_add((column as usize).wrapping_mul(channels))
+    fn window<const CH: usize>(&self, run: &Run, before: i32, [lanes, rows]: [usize; 2], begins: &mut [u32; SIDE]) -> Option<&[T]> {
+        let mut bounds = [i32::MAX, i32::MIN, i32::MAX, i32::MIN];
+        for i in 0..SIDE {
+            let (column, row) = (run.column[i], run.row[i]);
+            bounds[0] = if column < bounds[0] { column } else { bounds[0] };
+            bounds[1] = if column > bounds[1] { column } else { bounds[1] };
+            bounds[2] = if row < bounds[2] { row } else { bounds[2] };
+            bounds[3] = if row > bounds[3] { row } else { bounds[3] };
+        }
+        let ([left, right, top, bottom], ImageSize { width, height }) = (bounds, self.picture.size);
+        let (first, last) = (top - before, bottom - before + rows as i32);
+        let stride = width as usize * CH;
+        let is_held = left >= before && first >= 0 && last <= height as i32 && (right - before) as usize + lanes / CH <= width as usize;
+        // Places are counted in 32 bits.
+        if !is_held || (bottom - top + 1) as usize * stride > i32::MAX as usize {
+            return None;
+        }
+        for i in 0..SIDE {
+            begins[i] = (run.row[i] - top) as u32 * stride as u32 + (run.column[i] - left) as u32 * CH as u32;
+        }
+        let row = (first as usize).checked_sub(self.picture.first)?;
+        self.picture.samples.get(row * stride + (left - before) as usize * CH..)
     }
 
     /// Columns of all squares together.
@@ -185,9 +199,9 @@ impl<T: Sample> Job<'_, T> {
 /// `CH` channels, `ROWS` x `ROWS` pixels, of which lines of `LANES` levels are read: `CH` times a power of two.
 #[inline(always)]
 fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: &Job<'_, T>, into: &mut [T]) {
-    let (across, down) = (job.weights.across.of::<LANES>(), job.weights.down.of::<ROWS>());
+    let (across, vertical) = (job.weights.across.of::<LANES>(), job.weights.down.of::<ROWS>());
     let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
-    let mut sums = [[0.0_f32; LANES]; SIDE];
+    let (mut sums, mut begins) = ([[0.0_f32; LANES]; SIDE], [0; SIDE]);
     for cell in job.cells {
         for row in 0..cell.size[1] {
             let begin = (row * width + left) * CH;
@@ -197,10 +211,38 @@ fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: 
                 into.fill(T::default());
                 continue;
             }
-            for i in 0..run.count.min(SIDE) {
-                if run.inside[i] {
-                    pixel::<T, CH, ROWS, LANES>(job, &run, i, across, down, &mut sums[i]);
-                } else {
+            let (mut right, mut down) = ([(0, 0.0); SIDE], [(0, 0.0); SIDE]);
+            for i in 0..SIDE {
+                right[i] = step(run.right[i]);
+                down[i] = step(run.down[i]);
+            }
+            let before = (ROWS / 2 - 1) as i32;
+            let window = job.window::<CH>(&run, before, [LANES, ROWS], &mut begins);
+            for i in 0..SIDE {
+                let mut lines = [[T::default(); LANES]; ROWS];
+                match window {
+                    Some(window) => copy(window, begins[i] as usize, job.picture.size.width as usize * CH, &mut lines),
+                    None if run.inside[i] && i < run.count => {
+                        for (tap, line) in (0..).zip(&mut lines) {
+                            job.mirrored_line::<CH>(run.column[i] - before, run.row[i] - before + tap, line);
+                        }
+                    }
+                    None => {}
+                }
+                let (across, down) = (across.at(right[i]), vertical.at(down[i]));
+                let mut here = [0.0_f32; LANES];
+                for tap in 0..ROWS {
+                    for lane in 0..LANES {
+                        here[lane] += down[tap] * lines[tap][lane].to_f32();
+                    }
+                }
+                for lane in 0..LANES {
+                    sums[i][lane] = here[lane] * across[lane];
+                }
+            }
+            // Of runs that are inside as a whole nothing is to be left out.
+            for i in 0..SIDE {
+                if !run.inside[i] {
                     sums[i] = [0.0; LANES];
                 }
             }
@@ -223,45 +265,14 @@ fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: 
     }
 }
 
+/// Copies the lines that begin at `begin` and in the rows below.
 #[inline(always)]
-fn pixel<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(
-    job: &Job<'_, T>,
-    run: &Run,
-    i: usize,
-    across: Lanes<'_, LANES>,
-    down: Lanes<'_, ROWS>,
-    into: &mut [f32; LANES],
-) {
-    let before = (ROWS / 2 - 1) as i32;
-    let (column, row) = (run.column[i] - before, run.row[i] - before);
-    let weights = down.at(run.down[i]);
-    let stride = job.picture.size.width as usize * CH;
-    let begin = job.place(column, row, CH);
-    let end = begin.wrapping_add((ROWS - 1) * stride + LANES);
-    let mut lines = [[T::default(); LANES]; ROWS];
-    match job.picture.samples.get(begin..end) {
-        Some(window) if job.holds(column, row, LANES / CH, ROWS) => {
-            for tap in 0..ROWS {
-                if let Some(line) = window.get(tap * stride..).and_then(<[T]>::first_chunk::<LANES>) {
-                    lines[tap] = *line;
-                }
-            }
-        }
-        _ => {
-            for tap in 0..ROWS {
-                job.mirrored_line::<CH>(column, row + tap as i32, &mut lines[tap]);
-            }
-        }
-    }
-    let across = across.at(run.right[i]);
-    let mut sums = [0.0_f32; LANES];
+fn copy<T: Copy, const ROWS: usize, const LANES: usize>(window: &[T], begin: usize, stride: usize, lines: &mut [[T; LANES]; ROWS]) {
+    let Some(window) = window.get(begin..begin + (ROWS - 1) * stride + LANES) else { return };
     for tap in 0..ROWS {
-        for lane in 0..LANES {
-            sums[lane] += weights[tap] * lines[tap][lane].to_f32();
+        if let Some(line) = window.get(tap * stride..tap * stride + LANES).and_then(<[T]>::first_chunk) {
+            lines[tap] = *line;
         }
-    }
-    for lane in 0..LANES {
-        into[lane] = sums[lane] * across[lane];
     }
 }
 
@@ -310,30 +321,33 @@ fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
 
 #[inline(always)]
 fn gather<T: Sample, const CH: usize>(job: &Job<'_, T>, run: &Run, corners: &mut Corners<T>) {
-    let stride = job.picture.size.width as usize * CH;
-    for i in 0..run.count.min(SIDE) {
-        let (column, row) = (run.column[i], run.row[i]);
-        let place = job.place(column, row, CH);
-        match job.picture.samples.get(place..place.wrapping_add(stride + 2 * CH)) {
-            Some(window) if job.holds(column, row, 2, 2) => {
-                let below = &window[window.len() - 2 * CH..];
-                for channel in 0..CH {
-                    let of = &mut corners.0[channel];
-                    of[0][i] = window[channel];
-                    of[1][i] = window[CH + channel];
-                    of[2][i] = below[channel];
-                    of[3][i] = below[CH + channel];
-                }
+    let (stride, mut begins) = (job.picture.size.width as usize * CH, [0; SIDE]);
+    let window = job.window::<CH>(run, 0, [2 * CH, 2], &mut begins);
+    let Some(window) = window else { return gather_at_border::<T, CH>(job, run, corners) };
+    for i in 0..SIDE {
+        let begin = begins[i] as usize;
+        if let Some(window) = window.get(begin..begin + stride + 2 * CH) {
+            let below = &window[window.len() - 2 * CH..];
+            for channel in 0..CH {
+                let of = &mut corners.0[channel];
+                of[0][i] = window[channel];
+                of[1][i] = window[CH + channel];
+                of[2][i] = below[channel];
+                of[3][i] = below[CH + channel];
             }
-            _ => {
-                for line in 0..2 {
-                    let mut two = [[T::default(); CH]; 2];
-                    job.mirrored_line::<CH>(column, row + line as i32, two.as_flattened_mut());
-                    for channel in 0..CH {
-                        corners.0[channel][2 * line][i] = two[0][channel];
-                        corners.0[channel][2 * line + 1][i] = two[1][channel];
-                    }
-                }
+        }
+    }
+}
+
+#[inline(never)]
+fn gather_at_border<T: Sample, const CH: usize>(job: &Job<'_, T>, run: &Run, corners: &mut Corners<T>) {
+    for i in (0..run.count.min(SIDE)).filter(|i| run.inside[*i]) {
+        for line in 0..2 {
+            let mut two = [[T::default(); CH]; 2];
+            job.mirrored_line::<CH>(run.column[i], run.row[i] + line as i32, two.as_flattened_mut());
+            for channel in 0..CH {
+                corners.0[channel][2 * line][i] = two[0][channel];
+                corners.0[channel][2 * line + 1][i] = two[1][channel];
             }
         }
     }
