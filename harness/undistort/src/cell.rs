@@ -19,8 +19,8 @@ const FAR: f64 = 1e6;
 pub(crate) enum Shape {
     /// Nowhere, or from outside of the source.
     Nothing,
-    /// Coefficients of x and y: of the powers of the place down in those of the place to the right, each from -1 to 1.
-    Smooth([[[f32; 4]; 4]; 2]),
+    /// By powers of the place down: the coefficients of the powers of the place to the right, of x and then of y; both places from -1 to 1.
+    Smooth([[f32; 8]; 4]),
     /// One by one, row by row; not-a-numbers where there is no ray.
     Single(Box<[[f32; 2]]>),
 }
@@ -60,7 +60,7 @@ impl Run {
         Self { count: 0, column: [0; SIDE], row: [0; SIDE], right: [0.0; SIDE], down: [0.0; SIDE], inside: [false; SIDE] };
 
     /// Whether none of its pixels lies in the source.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn is_outside(&self) -> bool {
         let mut any = false;
         for i in 0..SIDE {
@@ -125,7 +125,7 @@ impl Cell {
     fn smooth(&mut self, nodes: &[[Option<[f64; 2]>; 4]; 4], checks: &[Option<[f64; 2]>; 5]) -> Option<Shape> {
         let middle = checks[0]?;
         self.base = middle.map(|along| along.round() as i32);
-        let mut shape = [[[0.0_f32; 4]; 4]; 2];
+        let mut shape = [[0.0_f32; 8]; 4];
         for axis in 0..2 {
             let mut along = [[0.0; 4]; 4];
             for (row, nodes) in along.iter_mut().zip(nodes) {
@@ -137,13 +137,15 @@ impl Cell {
             }
             for power in 0..4 {
                 let down = coefficients([along[0][power], along[1][power], along[2][power], along[3][power]]);
-                shape[axis][power] = down.map(|value| value as f32);
+                for (line, value) in shape.iter_mut().zip(down) {
+                    line[4 * axis + power] = value as f32;
+                }
             }
         }
         for (at, exact) in CHECKS.iter().zip(checks) {
-            let exact = (*exact)?;
+            let (exact, row) = ((*exact)?, row_of(&shape, at[1] as f32));
             for axis in 0..2 {
-                let found = f64::from(polynomial(&row_of(&shape[axis], at[1]), at[0] as f32)) + f64::from(self.base[axis]);
+                let found = f64::from(polynomial(&row, 4 * axis, at[0] as f32)) + f64::from(self.base[axis]);
                 let is_close = (found - exact[axis]).abs() <= CLOSE;
                 if !is_close {
                     return None;
@@ -151,6 +153,12 @@ impl Cell {
             }
         }
         Some(Shape::Smooth(shape))
+    }
+
+    /// Whether all its pixels lie in the source.
+    #[inline(always)]
+    pub(crate) fn is_full(&self) -> bool {
+        self.covered == self.size[0] * self.size[1]
     }
 
     /// Fills in what is known only from all places.
@@ -192,15 +200,15 @@ impl Cell {
                 run.inside = [false; SIDE];
                 return;
             }
-            Shape::Smooth([along_x, along_y]) => {
+            Shape::Smooth(shape) => {
                 let (across, down) = (2.0 / (self.size[0].max(2) - 1) as f32, 2.0 / (self.size[1].max(2) - 1) as f32);
                 let v = (row as f32 + shift[1]) * down - 1.0;
-                let (a, b) = (row_of(along_x, f64::from(v)), row_of(along_y, f64::from(v)));
+                let line = row_of(shape, v);
                 let begin = shift[0] * across - 1.0;
                 for i in 0..SIDE {
                     let u = i as f32 * across + begin;
-                    x[i] = polynomial(&a, u);
-                    y[i] = polynomial(&b, u);
+                    x[i] = polynomial(&line, 0, u);
+                    y[i] = polynomial(&line, 4, u);
                 }
             }
             Shape::Single(places) => self.single(places, row, shift, &mut x, &mut y),
@@ -260,16 +268,15 @@ pub(crate) fn parted(value: f32) -> (i32, f32) {
 
 /// The coefficients of a row, `v` from -1 to 1.
 #[inline(always)]
-fn row_of(shape: &[[f32; 4]; 4], v: f64) -> [f32; 4] {
-    let mut row = [0.0; 4];
-    for power in 0..4 {
-        let [a, b, c, d] = shape[power];
-        row[power] = (f64::from(a) + v * (f64::from(b) + v * (f64::from(c) + v * f64::from(d)))) as f32;
+fn row_of([a, b, c, d]: &[[f32; 8]; 4], v: f32) -> [f32; 8] {
+    let mut row = [0.0; 8];
+    for i in 0..8 {
+        row[i] = a[i] + v * (b[i] + v * (c[i] + v * d[i]));
     }
     row
 }
 
 #[inline(always)]
-fn polynomial(&[a, b, c, d]: &[f32; 4], u: f32) -> f32 {
-    a + u * (b + u * (c + u * d))
+fn polynomial(row: &[f32; 8], first: usize, u: f32) -> f32 {
+    row[first] + u * (row[first + 1] + u * (row[first + 2] + u * row[first + 3]))
 }

@@ -22,15 +22,13 @@ pub(super) struct Weights {
     /// Of columns, for each channel, and of rows.
     across: Table,
     down: Table,
-    /// Whether means over the area of a pixel are taken.
-    area: bool,
 }
 
 impl Weights {
     pub(super) fn new(kernel: Kernel, channels: usize) -> Self {
         // Lines of a power of two.
         let across = Table::new(kernel, channels, kernel.taps().next_power_of_two() * channels);
-        Self { across, down: Table::new(kernel, 1, kernel.taps()), area: kernel == Kernel::Area }
+        Self { across, down: Table::new(kernel, 1, kernel.taps()) }
     }
 }
 
@@ -69,8 +67,10 @@ macro_rules! sampled {
 
             loops! {
                 $level:
-                linear_grey = linear<1>;
-                linear_colour = linear<3>;
+                linear_grey = linear<1, 1, 2>;
+                linear_colour = linear<3, 4, 8>;
+                area_grey = area<1>;
+                area_colour = area<3>;
                 cubic_grey = taps<1, 4, 4>;
                 cubic_colour = taps<3, 4, 12>;
                 lanczos3_grey = taps<1, 6, 8>;
@@ -83,8 +83,10 @@ macro_rules! sampled {
                 #[expect(private_interfaces, reason = "as in the trait")]
                 fn squares(kernel: Kernel, channels: usize) -> Option<Squares<Self>> {
                     Some(match (kernel, channels) {
-                        (Kernel::Linear | Kernel::Area, 1) => linear_grey,
-                        (Kernel::Linear | Kernel::Area, 3) => linear_colour,
+                        (Kernel::Linear, 1) => linear_grey,
+                        (Kernel::Linear, 3) => linear_colour,
+                        (Kernel::Area, 1) => area_grey,
+                        (Kernel::Area, 3) => area_colour,
                         (Kernel::Cubic, 1) => cubic_grey,
                         (Kernel::Cubic, 3) => cubic_colour,
                         (Kernel::Lanczos3, 1) => lanczos3_grey,
@@ -104,7 +106,8 @@ sampled!(u16, words);
 
 loops! {
     f32:
-    linear_plane = linear<1>;
+    linear_plane = linear<1, 1, 2>;
+    area_plane = area<1>;
     cubic_plane = taps<1, 4, 4>;
     six_plane = taps<1, 6, 8>;
     eight_plane = taps<1, 8, 8>;
@@ -120,7 +123,8 @@ impl Sampled for f32 {
 /// The loop for a plane, which may hold the coefficients of a spline.
 pub(super) fn of_plane(kernel: Kernel) -> Squares<f32> {
     match kernel {
-        Kernel::Linear | Kernel::Area => linear_plane,
+        Kernel::Linear => linear_plane,
+        Kernel::Area => area_plane,
         Kernel::Cubic => cubic_plane,
         Kernel::Lanczos3 | Kernel::Spline => six_plane,
         Kernel::Lanczos4 => eight_plane,
@@ -207,7 +211,7 @@ fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: usize>(job: 
             let begin = (row * width + left) * CH;
             let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
             job.run(cell, row, [0.0; 2], &mut run);
-            if run.is_outside() {
+            if !cell.is_full() && run.is_outside() {
                 into.fill(T::default());
                 continue;
             }
@@ -276,12 +280,77 @@ fn copy<T: Copy, const ROWS: usize, const LANES: usize>(window: &[T], begin: usi
     }
 }
 
+/// The 2 x 2 pixels around each place, in `LANES` levels a pixel, `CH` of which are its channels; lines of `BOTH` levels hold a pixel and that beside it.
+#[inline(always)]
+fn linear<T: Sample, const CH: usize, const LANES: usize, const BOTH: usize>(job: &Job<'_, T>, into: &mut [T]) {
+    let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
+    let (stride, mut begins) = (job.picture.size.width as usize * CH, [0; SIDE]);
+    let mut lines = [[[T::default(); BOTH]; SIDE]; 2];
+    for cell in job.cells {
+        for row in 0..cell.size[1] {
+            let begin = (row * width + left) * CH;
+            let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
+            job.run(cell, row, [0.0; 2], &mut run);
+            if !cell.is_full() && run.is_outside() {
+                into.fill(T::default());
+                continue;
+            }
+            if let Some(window) = job.window::<CH>(&run, 0, [BOTH.next_multiple_of(CH), 2], &mut begins) {
+                for i in 0..SIDE {
+                    let begin = begins[i] as usize;
+                    if let Some(window) = window.get(begin..begin + stride + BOTH) {
+                        let below = window.last_chunk::<BOTH>();
+                        if let (Some(above), Some(below)) = (window.first_chunk::<BOTH>(), below) {
+                            lines[0][i] = *above;
+                            lines[1][i] = *below;
+                        }
+                    }
+                }
+            } else {
+                lines_at_border::<T, CH, BOTH>(job, &run, &mut lines);
+            }
+            let mut found = [[T::default(); LANES]; SIDE];
+            for i in 0..SIDE {
+                for lane in 0..LANES {
+                    let [a, b] = [lines[0][i][lane].to_f32(), lines[0][i][lane + CH].to_f32()];
+                    let [c, d] = [lines[1][i][lane].to_f32(), lines[1][i][lane + CH].to_f32()];
+                    let (above, below) = (a + run.right[i] * (b - a), c + run.right[i] * (d - c));
+                    found[i][lane] = T::of_f32(above + run.down[i] * (below - above));
+                }
+            }
+            if !cell.is_full() {
+                for i in 0..SIDE {
+                    if !run.inside[i] {
+                        found[i] = [T::default(); LANES];
+                    }
+                }
+            }
+            let into = into.as_chunks_mut::<CH>().0;
+            for i in 0..into.len().min(SIDE) {
+                if let Some(found) = found[i].first_chunk() {
+                    into[i] = *found;
+                }
+            }
+        }
+        left += cell.size[0];
+    }
+}
+
+#[inline(never)]
+fn lines_at_border<T: Sample, const CH: usize, const BOTH: usize>(job: &Job<'_, T>, run: &Run, lines: &mut [[[T; BOTH]; SIDE]; 2]) {
+    for i in (0..run.count.min(SIDE)).filter(|i| run.inside[*i]) {
+        for (row, lines) in (run.row[i]..).zip(lines.iter_mut()) {
+            job.mirrored_line::<CH>(run.column[i], row, &mut lines[i]);
+        }
+    }
+}
+
 /// The 2 x 2 pixels around each place of a run, channel by channel.
 struct Corners<T>([[[T; SIDE]; 4]; CHANNELS]);
 
-/// 2 x 2 pixels; at several places in a pixel where means over its area are taken.
+/// Means over the area of a pixel where the picture shrinks, and of 2 x 2 pixels elsewhere.
 #[inline(always)]
-fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
+fn area<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
     let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
     let mut corners = Corners([[[T::default(); SIDE]; 4]; CHANNELS]);
     for cell in job.cells {
@@ -289,7 +358,7 @@ fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
             let begin = (row * width + left) * CH;
             let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
             job.run(cell, row, [0.0; 2], &mut run);
-            if run.is_outside() {
+            if !cell.is_full() && run.is_outside() {
                 into.fill(T::default());
                 continue;
             }
@@ -298,9 +367,7 @@ fn linear<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
             for channel in 0..CH {
                 mix(&corners.0[channel], &run, &mut levels[channel]);
             }
-            if job.weights.area {
-                mean::<T, CH>(job, cell, row, &run.inside, &mut corners, &mut levels);
-            }
+            mean::<T, CH>(job, cell, row, &run.inside, &mut corners, &mut levels);
             let mut found = [[T::default(); SIDE]; CHANNELS];
             for channel in 0..CH {
                 for i in 0..SIDE {
