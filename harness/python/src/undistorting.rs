@@ -13,7 +13,8 @@ use crate::error::{camera as refused, input};
 use crate::pool::released;
 
 /// What a picture may be.
-const EXPECTED: &str = "expected an array (rows, columns) or (rows, columns, channels) of uint8, uint16 or float32, with 1 to 4 channels; or a list of such";
+const EXPECTED: &str =
+    "expected an array (rows, columns) or (rows, columns, channels) of uint8, uint16 or float32, with 1 to 4 channels; or a list of such";
 
 /// The views of what is given and of what is made.
 fn views(camera: &Camera, to: &Bound<'_, PyAny>, frame: &str, scale: f64, redistort: bool) -> PyResult<(View, View)> {
@@ -71,7 +72,9 @@ pub fn undistort<'py>(
     let pictures = if is_one {
         one(py, picture, &map, kernel)?
     } else {
-        let Ok(all) = picture.cast::<PySequence>() else { return Err(input(format!("picture: found {}; {EXPECTED}", picture.get_type().name()?))) };
+        let Ok(all) = picture.cast::<PySequence>() else {
+            return Err(input(format!("picture: found {}; {EXPECTED}", picture.get_type().name()?)));
+        };
         let made = (0..all.len()?).map(|i| one(py, &all.get_item(i)?, &map, kernel)).collect::<PyResult<Vec<_>>>()?;
         PyList::new(py, made)?.into_any()
     };

@@ -72,22 +72,12 @@ impl Run {
 
 /// Monomials from values at [`NODES`].
 fn coefficients([a, b, c, d]: [f64; 4]) -> [f64; 4] {
-    [
-        (9.0 * (b + c) - (a + d)) / 16.0,
-        (27.0 * (c - b) + a - d) / 16.0,
-        9.0 * (a + d - b - c) / 16.0,
-        9.0 * (3.0 * (b - c) + d - a) / 16.0,
-    ]
+    [(9.0 * (b + c) - (a + d)) / 16.0, (27.0 * (c - b) + a - d) / 16.0, 9.0 * (a + d - b - c) / 16.0, 9.0 * (3.0 * (b - c) + d - a) / 16.0]
 }
 
 impl Cell {
     /// The square whose first pixel is `first`, of a map to `source` through `place`.
-    pub(crate) fn new(
-        first: [usize; 2],
-        size: [usize; 2],
-        source: ImageSize,
-        place: &impl Fn(PixelPoint) -> Option<PixelPoint>,
-    ) -> Self {
+    pub(crate) fn new(first: [usize; 2], size: [usize; 2], source: ImageSize, place: &impl Fn(PixelPoint) -> Option<PixelPoint>) -> Self {
         let half = size.map(|count| 0.5 * (count.max(2) - 1) as f64);
         let near = |at: &PixelPoint| at.x.abs() < FAR && at.y.abs() < FAR;
         let exact = |[u, v]: [f64; 2]| {
@@ -111,7 +101,8 @@ impl Cell {
                 let all: Vec<Option<PixelPoint>> = all.collect();
                 // That nearest to the source's middle: what is far off, and less exact in single precision, lies outside of it.
                 let middle = PixelPoint::new(0.5 * f64::from(source.width), 0.5 * f64::from(source.height));
-                let nearest = all.iter().flatten().min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle))).copied().unwrap_or_default();
+                let nearest =
+                    all.iter().flatten().min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle))).copied().unwrap_or_default();
                 cell.base = [nearest.x.round() as i32, nearest.y.round() as i32];
                 let less = |at: &PixelPoint| [(at.x - f64::from(cell.base[0])) as f32, (at.y - f64::from(cell.base[1])) as f32];
                 cell.shape = Shape::Single(all.iter().map(|at| at.as_ref().map_or([f32::NAN; 2], less)).collect());

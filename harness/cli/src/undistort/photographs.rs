@@ -73,7 +73,9 @@ impl Undistort {
         if form.size != size {
             let ImageSize { width, height } = form.size;
             let help = match opened.turn() {
-                Some(turn) if (height, width) == (size.width, size.height) => format!("; it was turned ({turn}): --ignore-orientation leaves it"),
+                Some(turn) if (height, width) == (size.width, size.height) => {
+                    format!("; it was turned ({turn}): --ignore-orientation leaves it")
+                }
                 None if (height, width) == (size.width, size.height) => "; turn the photograph, or the camera".to_owned(),
                 _ => String::new(),
             };

@@ -33,10 +33,17 @@ impl Views {
         let new = match (command.target_file(), command.to.as_str()) {
             (Some(file), _) => {
                 if !matches!(command.frame, Frame::Keep) || command.scale != 1.0 {
-                    return Err(Failure::input(format!("--to {}: the camera of a file has its own frame: no --frame and no --scale", command.to)));
+                    return Err(Failure::input(format!(
+                        "--to {}: the camera of a file has its own frame: no --frame and no --scale",
+                        command.to
+                    )));
                 }
                 if !file.exists() {
-                    return Err(Failure::input(format!("--to {}: no such file; expected {} or a camera file", command.to, NAMES.join(", "))));
+                    return Err(Failure::input(format!(
+                        "--to {}: no such file; expected {} or a camera file",
+                        command.to,
+                        NAMES.join(", ")
+                    )));
                 }
                 View::Camera(inputs::camera(&file, command.size)?)
             }
@@ -62,16 +69,27 @@ impl Views {
         let kept = kept(&self.given, &self.made);
         say!("given: {}", sized(&self.given));
         say!("new: {}", sized(&self.made));
-        say!("kept: {:.2} % of the area of what is given; {:.2} % of the new pictures is empty", 100.0 * kept.shown, 100.0 * (1.0 - map.coverage()));
+        say!(
+            "kept: {:.2} % of the area of what is given; {:.2} % of the new pictures is empty",
+            100.0 * kept.shown,
+            100.0 * (1.0 - map.coverage())
+        );
         if kept.with_ray < 1.0 {
-            say!("warning: {:.2} % of the area of what is given has no ray: the camera folds, or sees nothing there", 100.0 * (1.0 - kept.with_ray));
+            say!(
+                "warning: {:.2} % of the area of what is given has no ray: the camera folds, or sees nothing there",
+                100.0 * (1.0 - kept.with_ray)
+            );
         }
         if map.shrinks() > SHRUNK && !is_area {
             say!("warning: the picture shrinks up to {:.1} times: fine patterns become others; --kernel area takes means", map.shrinks());
         }
         if let View::Equirectangular(sphere) = &self.made {
             let (scale, axis) = (plain(sphere.scale.to_radians()), sphere.axis);
-            say!("its sphere: {scale} px a degree, axis at ({:.6}, {:.6}) from the centre of the first pixel; no camera file holds it", axis.x, axis.y);
+            say!(
+                "its sphere: {scale} px a degree, axis at ({:.6}, {:.6}) from the centre of the first pixel; no camera file holds it",
+                axis.x,
+                axis.y
+            );
         }
     }
 

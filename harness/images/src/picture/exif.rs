@@ -94,7 +94,9 @@ impl<R: Read + Seek> Reader<'_, R> {
         for i in 0..u64::from(count) {
             self.input.seek(SeekFrom::Start(place + 2 + 12 * i))?;
             let (tag, kind, count) = (self.short()?, self.short()?, self.long()?);
-            let Some(bytes) = size(kind).map(|size| size * u64::from(count)).filter(|bytes| wanted(tag) && *bytes <= MOST_BYTES) else { continue };
+            let Some(bytes) = size(kind).map(|size| size * u64::from(count)).filter(|bytes| wanted(tag) && *bytes <= MOST_BYTES) else {
+                continue;
+            };
             if bytes > 4 {
                 let place = self.long()?;
                 self.input.seek(SeekFrom::Start(u64::from(place)))?;
@@ -246,7 +248,11 @@ mod tests {
                 Entry { tag: 0x10f, kind: 2, value: b"Maker\0".to_vec() },
                 Entry { tag: 0x11a, kind: 5, value: [72_u32.to_le_bytes(), 1_u32.to_le_bytes()].concat() },
             ],
-            exif: vec![Entry::long(COLUMNS, &[640]), Entry::short(ROWS, &[480]), Entry { tag: 0x829a, kind: 5, value: vec![1, 0, 0, 0, 125, 0, 0, 0] }],
+            exif: vec![
+                Entry::long(COLUMNS, &[640]),
+                Entry::short(ROWS, &[480]),
+                Entry { tag: 0x829a, kind: 5, value: vec![1, 0, 0, 0, 125, 0, 0, 0] },
+            ],
             gps: vec![Entry { tag: 1, kind: 2, value: b"N\0".to_vec() }],
         }
     }
@@ -279,7 +285,9 @@ mod tests {
     #[test]
     fn the_other_order_of_bytes_is_read_too() {
         // One entry, maker, in big-endian order.
-        let file = [&b"MM\0*\0\0\0\x08\0\x02"[..], &[1, 0x0f, 0, 2, 0, 0, 0, 3], b"ab\0\0", &[1, 0x12, 0, 3, 0, 0, 0, 1, 0, 6, 0, 0], &[0; 4]].concat();
+        let file =
+            [&b"MM\0*\0\0\0\x08\0\x02"[..], &[1, 0x0f, 0, 2, 0, 0, 0, 3], b"ab\0\0", &[1, 0x12, 0, 3, 0, 0, 0, 1, 0, 6, 0, 0], &[0; 4]]
+                .concat();
         let found = Directories::read(&mut Cursor::new(&file)).unwrap();
         assert_eq!(found.main, [Entry { tag: 0x10f, kind: 2, value: b"ab\0".to_vec() }]);
         let changed = of_picture(&file, [1, 1]).unwrap();

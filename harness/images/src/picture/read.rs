@@ -135,7 +135,9 @@ impl Opened {
                     reader.read_row(&mut line).map_err(of_png).map_err(content)?;
                     match into {
                         PictureLevels::Bytes(levels) => levels.extend(&line),
-                        PictureLevels::Words(levels) => levels.extend(line.as_chunks::<2>().0.iter().map(|level| u16::from_be_bytes(*level))),
+                        PictureLevels::Words(levels) => {
+                            levels.extend(line.as_chunks::<2>().0.iter().map(|level| u16::from_be_bytes(*level)))
+                        }
                     }
                     if self.given + row + 1 == self.form.size.height as usize {
                         // To the end of the data, whose checksum comes last.

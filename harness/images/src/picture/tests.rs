@@ -110,7 +110,10 @@ fn a_jpeg_keeps_what_it_says() {
         assert_eq!(read(&path, 23).1, About::default());
     }
     let deep = PictureForm { size: ImageSize { width: 3, height: 3 }, channels: 3, is_deep: true };
-    assert!(PictureKind::Jpeg.refuses(deep).is_some() && PictureKind::Jpeg.refuses(PictureForm { channels: 4, is_deep: false, ..deep }).is_some());
+    assert!(
+        PictureKind::Jpeg.refuses(deep).is_some()
+            && PictureKind::Jpeg.refuses(PictureForm { channels: 4, is_deep: false, ..deep }).is_some()
+    );
 }
 
 #[test]

@@ -40,7 +40,8 @@ impl TiffRows {
         let plain = number(Tag::PhotometricInterpretation)?.is_some_and(|found| PLAIN.contains(&found));
         let together = number(Tag::PlanarConfiguration)?.unwrap_or(1) == 1;
         // Of whole numbers; a chunk may be as large as the limits of the decoder, which are its own.
-        let whole = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat)?.is_none_or(|formats| formats.iter().all(|format| *format == 1));
+        let whole =
+            decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat)?.is_none_or(|formats| formats.iter().all(|format| *format == 1));
         let (channels, is_deep) = match decoder.colortype()? {
             ColorType::Gray(8) => (1, false),
             ColorType::Gray(16) => (1, true),

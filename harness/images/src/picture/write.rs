@@ -52,7 +52,9 @@ impl PictureKind {
         match self {
             Self::Jpeg if form.is_deep => Some("a JPEG holds 8 bits and the photograph has 16: expected png or tiff"),
             Self::Jpeg if form.channels % 2 == 0 => Some("a JPEG holds no alpha, which the photograph has: expected png or tiff"),
-            Self::Jpeg if form.size.width > 65_535 || form.size.height > 65_535 => Some("a JPEG has at most 65535 px a side: expected png or tiff"),
+            Self::Jpeg if form.size.width > 65_535 || form.size.height > 65_535 => {
+                Some("a JPEG has at most 65535 px a side: expected png or tiff")
+            }
             Self::Tiff if tiff_bytes(form) > MOST_TIFF - (1 << 24) => Some("the picture is larger than the 4 GB of a TIFF: expected png"),
             _ => None,
         }

@@ -95,7 +95,10 @@ fn the_mask_is_what_has_places_and_rows_are_enough() {
             let place = map.place(column, row);
             assert_eq!(place.is_some(), mask[row * width + column] == 255);
             if let Some(at) = place {
-                assert!(at.y.floor() >= needed.start as f64 - 1.0 && at.y.floor() + 1.0 <= needed.end as f64, "{row} {column}: {at:?} {needed:?}");
+                assert!(
+                    at.y.floor() >= needed.start as f64 - 1.0 && at.y.floor() + 1.0 <= needed.end as f64,
+                    "{row} {column}: {at:?} {needed:?}"
+                );
             }
         }
     }

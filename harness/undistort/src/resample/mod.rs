@@ -38,7 +38,13 @@ impl Level for f32 {}
 ///
 /// # Errors
 /// A picture that is not of the size of the map's source, or lacks rows; `into` of another length than `rows`.
-pub fn resample<T: Level>(map: &Map, kernel: Kernel, picture: &Picture<'_, T>, rows: Range<usize>, into: &mut [T]) -> Result<(), PictureError> {
+pub fn resample<T: Level>(
+    map: &Map,
+    kernel: Kernel,
+    picture: &Picture<'_, T>,
+    rows: Range<usize>,
+    into: &mut [T],
+) -> Result<(), PictureError> {
     check(map, kernel, picture, &rows, into.len())?;
     let stride = map.size().width as usize * picture.channels;
     let Some(squares) = T::squares(kernel, picture.channels) else {

@@ -89,7 +89,11 @@ mod tests {
             let weights = Kernel::Spline.weights(0.0);
             let at = |x: i64, y: i64| {
                 let line = |y: i64| -> f64 {
-                    let of = |k: i64| f64::from(plane[super::super::squares::mirrored(y, height) * width + super::super::squares::mirrored(x + k - 2, width)]);
+                    let of = |k: i64| {
+                        f64::from(
+                            plane[super::super::squares::mirrored(y, height) * width + super::super::squares::mirrored(x + k - 2, width)],
+                        )
+                    };
                     (0..6).map(|k| weights[k as usize] * of(k)).sum()
                 };
                 (0..6).map(|k| weights[k as usize] * line(y + k - 2)).sum::<f64>()

@@ -126,7 +126,9 @@ fn threads_change_no_byte() {
     let map = bent();
     let samples: Vec<u8> = (0..(SIZE.width * SIZE.height) as usize * 4).map(|i| chance(i) as u8).collect();
     for kernel in Kernel::ALL {
-        let on = |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| all(&map, kernel, 4, &samples));
+        let on = |threads: usize| {
+            rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| all(&map, kernel, 4, &samples))
+        };
         assert!(on(1) == on(3), "{kernel}");
     }
 }
