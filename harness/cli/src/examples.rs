@@ -126,6 +126,14 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("stmap", &[("calibench stmap camera.xml --redistort --overscan auto -o map.exr", "for Nuke or Blender")]),
+    (
+        "undistort",
+        &[
+            ("calibench undistort a.jpg b.jpg --camera camera.yaml --frame crop -o flat", "straight lines are straight"),
+            ("calibench undistort a.tif --camera fisheye.json --to equirectangular --frame all -o sphere", "all of a fisheye"),
+            ("calibench undistort points.csv --camera camera.yaml -o ideal.csv", "points; --redistort leads back"),
+        ],
+    ),
     ("plugin", &[("calibench plugin test methods/mine.toml", "does it do what every plug-in must")]),
     ("schema", &[("calibench schema scenarios", "for editors"), ("calibench schema calibrate", "what `calibrate --json` answers")]),
     ("completions", &[("calibench completions bash", "write it to ~/.local/share/bash-completion/completions/calibench")]),

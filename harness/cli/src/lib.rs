@@ -54,6 +54,7 @@ mod show;
 mod speed;
 mod stmap;
 mod stored;
+mod undistort;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -145,6 +146,8 @@ enum Command {
     Diff(diff::Diff),
     /// Write a camera's distortion as an ST-map for compositing programs, either way, or check one
     Stmap(stmap::StMapCommand),
+    /// Make photographs, or points in them, as another camera would have them: without distortion, in another model, on a sphere
+    Undistort(Box<undistort::Undistort>),
     /// Try a program of one's own that is a method: whether it does what every plug-in must
     #[command(subcommand)]
     Plugin(plugin::PluginCommand),
@@ -235,6 +238,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),
         Command::Stmap(map) => map.run(),
+        Command::Undistort(undistort) => undistort.run(&context),
         Command::Plugin(plugin) => plugin.run(&context),
         Command::Confined(confined) => Err(confined.failure()),
         Command::Completions(completions) => completions.run(&command_line()),

@@ -28,6 +28,11 @@ pub fn table(option: &str, path: Option<&Path>, inputs: &Inputs) -> Result<Optio
     path.map(|path| file(option, path, ("a table", &["csv"]), inputs)).transpose()
 }
 
+/// A CSV file.
+pub fn file_of_points(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    file(option, path, ("a table", &["csv"]), inputs)
+}
+
 /// A picture.
 pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
     file(option, path, ("a picture", &PICTURES), inputs)

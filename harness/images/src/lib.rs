@@ -1,6 +1,7 @@
-//! Photographs and other pictures in files: grey values, depths and turns as cameras write them, PNG as we do, and maps from pixel to pixel.
+//! Photographs and other pictures in files: grey values, depths and turns as cameras write them, PNG as we do, all channels row by row, and maps from pixel to pixel.
 
 pub mod photo;
+pub mod picture;
 pub mod st_map;
 
 pub use photo::{

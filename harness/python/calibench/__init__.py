@@ -41,6 +41,8 @@ from ._calibench import (
     run,
     run_part,
     scenarios,
+    undistort,
+    undistort_points,
 )
 from ._method import method
 
@@ -81,4 +83,6 @@ __all__ = [
     "run",
     "run_part",
     "scenarios",
+    "undistort",
+    "undistort_points",
 ]

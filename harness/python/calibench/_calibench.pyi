@@ -46,6 +46,8 @@ __all__ = [
     "run",
     "run_part",
     "scenarios",
+    "undistort",
+    "undistort_points",
     "shipped",
 ]
 
@@ -451,6 +453,35 @@ def diff(
     first: Camera, second: Camera, *, rotation: bool = True, radius: Optional[float] = None, points: Optional[ArrayLike] = None
 ) -> Difference:
     """How far two cameras differ over the frame, after the best rotation: as `calibench diff` says."""
+
+def undistort(
+    picture: Union[np.ndarray, Sequence[np.ndarray]],
+    camera: Camera,
+    *,
+    to: Union[str, Camera] = "pinhole",
+    frame: str = "keep",
+    scale: float = 1.0,
+    kernel: str = "cubic",
+    redistort: bool = False,
+) -> Tuple[Union[np.ndarray, List[np.ndarray]], Optional[Camera], np.ndarray]:
+    """Pictures as another camera would have taken them: as `calibench undistort` makes them.
+
+    A picture is (rows, columns) or (rows, columns, channels) of uint8, uint16 or float32; of a list all are made with one map. Returned are the
+    picture or pictures, the camera that they are of (None on a sphere), and a mask: True where they show something.
+    `to` is "pinhole", "equirectangular" or a camera, `frame` "keep", "all" or "crop", `kernel` "linear", "cubic", "lanczos3", "lanczos4",
+    "area" or "spline", which moves no point.
+    """
+
+def undistort_points(
+    points: ArrayLike,
+    camera: Camera,
+    *,
+    to: Union[str, Camera] = "pinhole",
+    frame: str = "keep",
+    scale: float = 1.0,
+    redistort: bool = False,
+) -> np.ndarray:
+    """Points of pictures, (n, 2), where `undistort` puts them; `redistort` leads back. NaN for what has no place there."""
 
 def judge(
     what: Union[Sequence[_Path], Sequence[Union[ArrayLike, Measured]], Mapping[str, Sequence[Union[ArrayLike, Measured]]]],

@@ -26,6 +26,7 @@ mod restored;
 mod running;
 mod session;
 mod stopped;
+mod undistorting;
 
 use pyo3::prelude::*;
 
@@ -66,4 +67,6 @@ mod _calibench {
     use super::restored::restored;
     #[pymodule_export]
     use super::running::{Records, merge, run, run_part, shipped};
+    #[pymodule_export]
+    use super::undistorting::{undistort, undistort_points};
 }

@@ -13,7 +13,7 @@ static IN_USE: Mutex<u64> = Mutex::new(0);
 static FREED: Condvar = Condvar::new();
 
 /// A part of the memory, given back when dropped.
-pub(super) struct Share(u64);
+pub(crate) struct Share(u64);
 
 impl Drop for Share {
     fn drop(&mut self) {
@@ -49,7 +49,7 @@ pub(super) fn needed_in_rows(decoder: &dyn ImageDecoder) -> u64 {
 }
 
 /// Limits of a decoder.
-pub(super) fn limits(bytes: u64) -> Limits {
+pub(crate) fn limits(bytes: u64) -> Limits {
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(bytes);
     limits

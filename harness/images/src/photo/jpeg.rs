@@ -8,7 +8,7 @@ use super::Input;
 const END_OF_IMAGE: u8 = 0xd9;
 
 /// Whether the end mark of the image that starts here follows. Leaves the input where it was.
-pub(super) fn is_whole(mut input: &mut dyn Input) -> io::Result<bool> {
+pub(crate) fn is_whole(mut input: &mut dyn Input) -> io::Result<bool> {
     let start = input.stream_position()?;
     let walked = walk(&mut input);
     input.seek(SeekFrom::Start(start))?;

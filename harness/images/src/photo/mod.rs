@@ -1,14 +1,14 @@
 //! Photographs in, images out.
 
 mod bands;
-mod budget;
+pub(crate) mod budget;
 mod container;
 mod dense;
 mod depth;
 mod filters;
 pub mod grey;
 mod helped;
-mod jpeg;
+pub(crate) mod jpeg;
 mod levels;
 mod rows;
 mod turn;
@@ -29,6 +29,7 @@ pub use budget::MOST_BYTES;
 pub use dense::encode_png_densely;
 pub use depth::{DeepLevels, Depth, read_with_levels};
 pub use levels::{Levels, read_levels};
+pub(crate) use rows::of_png;
 pub use turn::Turn;
 
 /// Bytes of a file in which its orientation usually stands.
@@ -158,7 +159,7 @@ pub(crate) fn reader(input: &mut dyn Input) -> io::Result<ImageReader<&mut dyn I
     ImageReader::new(input).with_guessed_format()
 }
 
-fn open(path: &Path) -> Result<File, PhotoError> {
+pub(crate) fn open(path: &Path) -> Result<File, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let about = path.metadata().map_err(in_file)?;
     if about.is_dir() {
@@ -220,7 +221,7 @@ fn head_in(input: &mut dyn Input) -> Result<Head, ImageError> {
     Ok(Head { stored: ImageSize { width, height }, turn: Turn::of(decoder.orientation()?), is_deep: is_deep(decoder.color_type()) })
 }
 
-fn is_no_thumbnail(path: &Path, input: &mut dyn Input) -> Result<(), PhotoError> {
+pub(crate) fn is_no_thumbnail(path: &Path, input: &mut dyn Input) -> Result<(), PhotoError> {
     let found = container::thumbnail(input);
     found.map_or(Ok(()), |[size, of]| Err(PhotoError::Thumbnail { path: path.to_owned(), size, of }))
 }
@@ -269,7 +270,7 @@ fn finished(mut image: Image<'static>, white: Option<f32>, turn: Option<Turn>, r
 }
 
 /// The pixels as they stand in the file, how they are to be turned, and the part of the memory that they may take.
-fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<Turn>, budget::Share), PhotoError> {
+pub(crate) fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<Turn>, budget::Share), PhotoError> {
     let (decoder, turn, share) = begun(path, input, budget::needed)?;
     let image = DynamicImage::from_decoder(decoder).map_err(|source| PhotoError::Content { path: path.to_owned(), source })?;
     Ok((image, turn, share))

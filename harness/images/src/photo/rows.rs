@@ -74,7 +74,7 @@ impl ImageDecoder for Band<'_, '_> {
 }
 
 /// The decoder's errors as those of image's own.
-fn of_png(error: png::DecodingError) -> ImageError {
+pub(crate) fn of_png(error: png::DecodingError) -> ImageError {
     match error {
         png::DecodingError::IoError(source) => ImageError::IoError(source),
         png::DecodingError::LimitsExceeded => ImageError::Limits(LimitError::from_kind(LimitErrorKind::InsufficientMemory)),

@@ -12,7 +12,7 @@ pub struct Turn(Orientation);
 
 impl Turn {
     /// `None` for an image that stands upright.
-    pub(super) fn of(orientation: Orientation) -> Option<Self> {
+    pub(crate) fn of(orientation: Orientation) -> Option<Self> {
         (orientation != Orientation::NoTransforms).then_some(Self(orientation))
     }
 
@@ -27,7 +27,7 @@ impl Turn {
     }
 
     /// The pixels of a file turned to be upright.
-    pub(super) fn apply_to_levels(self, image: &mut DynamicImage) {
+    pub(crate) fn apply_to_levels(self, image: &mut DynamicImage) {
         image.apply_orientation(self.0);
     }
 
