@@ -89,7 +89,7 @@ for name, detect, first, turn, scatter in PEERS:
 sys.exit("not as stated" if failed else 0)
 PYTHON
 python3 -m venv "$folder/tools"
-"$folder/tools/bin/pip" install --quiet --disable-pip-version-check pupil-apriltags==1.0.4.post11 dt-apriltags==3.1.7 pyapriltags==3.4.3.1 apriltag-python==3.4.5 \
+"$folder/tools/bin/pip" install --quiet --no-compile --disable-pip-version-check pupil-apriltags==1.0.4.post11 dt-apriltags==3.1.7 pyapriltags==3.4.3.1 apriltag-python==3.4.5 \
     robotpy-apriltag==2026.2.2 kornia-rs==0.2.0 locus-tag==0.10.0 moms-apriltag==2023.1.15 opencv-python==5.0.0.93 numpy==2.2.6
 "$folder/tools/bin/python" "$folder/order.py"
 echo "as stated"

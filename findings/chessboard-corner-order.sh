@@ -100,7 +100,7 @@ for packages in "4.6.0 opencv-python-headless==4.6.0.66 numpy==1.26.4" "4.14.0 o
     rm -rf "$folder/tools"
     python3 -m venv "$folder/tools"
     # shellcheck disable=SC2086
-    "$folder/tools/bin/pip" install --quiet --disable-pip-version-check ${packages#* }
+    "$folder/tools/bin/pip" install --quiet --no-compile --disable-pip-version-check ${packages#* }
     "$folder/tools/bin/python" "$folder/chess.py" "${packages%% *}"
 done
 echo "as stated"

@@ -63,7 +63,7 @@ for packages in "opencv-python-headless==4.14.0.94 imageio==2.38.2 scikit-image=
     rm -rf "$folder/tools"
     python3 -m venv "$folder/tools"
     # shellcheck disable=SC2086
-    "$folder/tools/bin/pip" install --quiet --disable-pip-version-check $packages pillow==13.0.0 numpy==2.2.6
+    "$folder/tools/bin/pip" install --quiet --no-compile --disable-pip-version-check $packages pillow==13.0.0 numpy==2.2.6
     "$folder/tools/bin/python" "$folder/picture.py" "$folder/all.png" "$folder/smooth.jpg"
     "$folder/tools/bin/python" "$folder/grey.py" "$folder/all.png" "$folder/smooth.jpg" "$(case $packages in pycolmap*) echo colmap ;; *) echo others ;; esac)"
 done

@@ -55,8 +55,8 @@ for package in opencv-contrib-python-headless==4.6.0.66 opencv-contrib-python-he
     python3 -m venv "$folder/$version"
     numpy='numpy==2.2.6'
     [ "$version" = 4.6.0.66 ] && numpy='numpy==1.26.4'
-    "$folder/$version/bin/pip" install --quiet --disable-pip-version-check "$package" "$numpy"
-    "$folder/$version/bin/pip" install --quiet --disable-pip-version-check --no-deps moms-apriltag==2023.1.15 colorama
+    "$folder/$version/bin/pip" install --quiet --no-compile --disable-pip-version-check "$package" "$numpy"
+    "$folder/$version/bin/pip" install --quiet --no-compile --disable-pip-version-check --no-deps moms-apriltag==2023.1.15 colorama
     "$folder/$version/bin/python" "$folder/head.py" "$folder/tags.json"
 done
 echo "as stated"

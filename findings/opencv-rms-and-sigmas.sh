@@ -84,7 +84,7 @@ for package in opencv-contrib-python-headless==4.6.0.66 opencv-contrib-python-he
     case $package in *==4.6* | *==4.7* | *==4.8*) numpy='numpy==1.26.4' ;; esac
     rm -rf "$folder/tools"
     python3 -m venv "$folder/tools"
-    "$folder/tools/bin/pip" install --quiet --disable-pip-version-check "$package" "$numpy"
+    "$folder/tools/bin/pip" install --quiet --no-compile --disable-pip-version-check "$package" "$numpy"
     "$folder/tools/bin/python" "$folder/rms.py"
 done
 echo "as stated"

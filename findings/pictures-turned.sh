@@ -60,7 +60,7 @@ for packages in "4.6.0 opencv-python-headless==4.6.0.66 numpy==1.26.4" "4.14.0 o
     rm -rf "$folder/tools"
     python3 -m venv "$folder/tools"
     # shellcheck disable=SC2086
-    "$folder/tools/bin/pip" install --quiet --disable-pip-version-check ${packages#* } pillow==13.0.0
+    "$folder/tools/bin/pip" install --quiet --no-compile --disable-pip-version-check ${packages#* } pillow==13.0.0
     "$folder/tools/bin/python" "$folder/turned.py" "${packages%% *}" "$folder" 2> "$folder/said" || { tail -1 "$folder/said"; exit 1; }
 done
 echo "as stated"
