@@ -2,7 +2,7 @@
 # Seven packages that find AprilTags, on the same upright tag of family 36h11 as the AprilTag project draws it (moms-apriltag's picture), in 16 places of the pixel: which
 # corner is first, which way round, and where the origin of the pixel is. All put the origin at the outer corner of the first pixel: their corners are 0.5 px right of and below
 # those of cornerSubPix. The order is that of the tag, not of the picture: a tag on its head has its first corner where its foot was.
-# Seen (Linux, CPython 3.11), full resolution: first corner of the upright tag, the order on the picture, mean x and y of what is found less the pixel's centre, px:
+# Seen: Linux, CPython 3.11, full resolution: first corner of the upright tag, the order on the picture, mean x and y of what is found less the pixel's centre, px:
 #   pupil-apriltags 1.0.4.post11, dt-apriltags 3.1.7   bottom left, anticlockwise, .46 .47   scatter .13 px on pictures without noise
 #   robotpy-apriltag 2026.2.2                          bottom left, anticlockwise, .46 .48   .14 px
 #   pyapriltags 3.4.3.1, apriltag-python 3.4.5         bottom left, anticlockwise, .50 .50   .03 px

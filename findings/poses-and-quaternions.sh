@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Which way a pose goes, and the order of a quaternion, of a camera at (1, 0, 0) and of a turn of 90 degrees about z. camera_from_world: OpenCV's rvec and tvec, COLMAP's
-# cam_from_world, PoseLib's CameraPose. world_from_camera: gtsam's PinholeCamera. Order x y z w: pycolmap's Rotation3d (w x y z in COLMAP's files), SciPy, gtsam's coeffs().
+# cam_from_world, PoseLib's CameraPose. world_from_camera: gtsam's PinholeCamera. Order x y z w: pycolmap's Rotation3d, SciPy, gtsam's coeffs().
 # Order w x y z: PoseLib, pyquaternion, transforms3d, pytransform3d. All mean the same turn (Hamilton's).
 # AprilTag's own poses (pyapriltags, pupil-apriltags, apriltag-python) are camera_from_tag with y down and z into the paper, the identity for an upright tag in front of the
 # camera; OpenCV's square (SOLVEPNP_IPPE_SQUARE, aruco) has y up and z out of the paper, turned by 180 degrees about x.
