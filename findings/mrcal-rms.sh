@@ -23,7 +23,8 @@ inputs = dict(
     intrinsics=matrix.copy(), extrinsics_rt_fromref=np.zeros((0, 6)), frames_rt_toref=poses.copy(), points=None, observations_board=observed,
     indices_frame_camintrinsics_camextrinsics=np.array([[i, 0, -1] for i in range(VIEWS)], np.int32), observations_point=None,
     indices_point_camintrinsics_camextrinsics=None, lensmodel="LENSMODEL_PINHOLE", imagersizes=np.array([[1280, 960]], np.int32),
-    do_optimize_intrinsics_core=True, do_optimize_extrinsics=True, do_optimize_frames=True, do_optimize_calobject_warp=False, calibration_object_spacing=25.0, do_apply_outlier_rejection=False, do_apply_regularization=False,
+    do_optimize_intrinsics_core=True, do_optimize_extrinsics=True, do_optimize_frames=True, do_optimize_calobject_warp=False,
+    calibration_object_spacing=25.0, do_apply_outlier_rejection=False, do_apply_regularization=False,
 )
 said = mrcal.optimize(**inputs)
 again = [mrcal.project(mrcal.transform_point_rt(pose, board), "LENSMODEL_PINHOLE", inputs["intrinsics"][0]) for pose in inputs["frames_rt_toref"]]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Which way a pose goes, and the order of a quaternion, of a camera at (1, 0, 0) and of a turn of 90 degrees about z. camera_from_world: OpenCV's rvec and tvec, COLMAP's
-# cam_from_world, PoseLib's CameraPose. world_from_camera: gtsam's PinholeCamera. Order x y z w: pycolmap's Rotation3d, SciPy, gtsam's coeffs().
+# cam_from_world, PoseLib's CameraPose. OpenCV's stereoCalibrate has camera2_from_camera1: a second camera to the right has T < 0. world_from_camera: gtsam's PinholeCamera. Order x y z w: pycolmap's Rotation3d, SciPy, gtsam's coeffs().
 # Order w x y z: PoseLib, pyquaternion, transforms3d, pytransform3d. All mean the same turn (Hamilton's).
 # AprilTag's own poses (pyapriltags, pupil-apriltags, apriltag-python) are camera_from_tag with y down and z into the paper, the identity for an upright tag in front of the
 # camera; OpenCV's square (SOLVEPNP_IPPE_SQUARE, aruco) has y up and z out of the paper, turned by 180 degrees about x.
@@ -39,6 +39,17 @@ for name, shift in shifts.items():
 at = gtsam.PinholeCameraCal3_S2(gtsam.Pose3(gtsam.Rot3(), np.array([1.0, 0, 0])), gtsam.Cal3_S2(500, 500, 0, 640, 480)).project(np.array([0, 0, 5.0]))
 print(f"gtsam: a pose with translation (1, 0, 0) sees (0, 0, 5) at {at}: world_from_camera")
 assert np.allclose(at, [540, 480]), "not as stated"
+
+board = np.array([[25.0 * column, 25.0 * row, 0] for row in range(6) for column in range(9)])
+pairs = [[], []]
+for k in range(4):
+    tilt, ahead = np.array([0.3 * (-1) ** k, 0.2 * k - 0.3, 0.1]), np.array([-100.0 + 10 * k, -60, 400])
+    for camera, moved in enumerate((np.zeros(3), np.array([-40.0, 0, 0]))):
+        pairs[camera].append(cv2.projectPoints(board, tilt, ahead + moved, matrix, None)[0].astype(np.float32))
+flat = [board.astype(np.float32)] * 4
+stereo = cv2.stereoCalibrate(flat, *pairs, matrix.copy(), np.zeros(5), matrix.copy(), np.zeros(5), (1280, 960), flags=cv2.CALIB_FIX_INTRINSIC)[6]
+print(f"OpenCV: stereoCalibrate's T of a second camera 40 to the right: {np.round(stereo.ravel(), 2)}: camera2_from_camera1")
+assert np.allclose(stereo.ravel(), [-40, 0, 0], atol=0.1), "not as stated"
 
 turn, half = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]), 0.5**0.5
 pose = poselib.CameraPose()
