@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Which way a pose goes, and the order of a quaternion, of a camera at (1, 0, 0) and of a turn of 90 degrees about z. camera_from_world: OpenCV's rvec and tvec, COLMAP's
-# cam_from_world, PoseLib's CameraPose. OpenCV's stereoCalibrate has camera2_from_camera1: a second camera to the right has T < 0. world_from_camera: gtsam's PinholeCamera. Order x y z w: pycolmap's Rotation3d, SciPy, gtsam's coeffs().
-# Order w x y z: PoseLib, pyquaternion, transforms3d, pytransform3d. All mean the same turn (Hamilton's).
+# cam_from_world, PoseLib's CameraPose. OpenCV's stereoCalibrate has camera2_from_camera1: a second camera to the right has T < 0. world_from_camera: gtsam's PinholeCamera.
+# Order x y z w: pycolmap's Rotation3d, SciPy, gtsam's coeffs(). Order w x y z: PoseLib, pyquaternion, transforms3d, pytransform3d. All mean the same turn (Hamilton's).
 # AprilTag's own poses (pyapriltags, pupil-apriltags, apriltag-python) are camera_from_tag with y down and z into the paper, the identity for an upright tag in front of the
 # camera; OpenCV's square (SOLVEPNP_IPPE_SQUARE, aruco) has y up and z out of the paper, turned by 180 degrees about x.
 # Seen: opencv-python 5.0.0.93, pycolmap 4.2.1, poselib 2.0.5, gtsam 4.3.0, scipy 1.17.1, pyquaternion 0.9.9, transforms3d 0.4.2, pytransform3d 3.17.0,
