@@ -110,6 +110,25 @@ lint:
 peers:
     cargo test {{everything}} --test calibench peers::
 
+# What other tools' numbers mean, asked of them: every script of findings/, or NAME..., and their sum (docs/peers.md); some minutes, packages of several indexes
+findings *NAMES:
+    #!/usr/bin/env bash
+    set -uo pipefail
+    mkdir -p target/findings
+    names=({{NAMES}})
+    [ "${#names[@]}" -gt 0 ] || for script in findings/*.sh; do names+=("$(basename "$script" .sh)"); done
+    passed=0 failed=0 skipped=0
+    for name in "${names[@]}"; do
+        "findings/$name.sh" > "target/findings/$name.log" 2>&1
+        case $? in
+        0) passed=$((passed + 1)); echo "as stated      $name" ;;
+        2) skipped=$((skipped + 1)); echo "not asked      $name: $(tail -1 "target/findings/$name.log")" ;;
+        *) failed=$((failed + 1)); echo "NOT AS STATED  $name: target/findings/$name.log" ;;
+        esac
+    done
+    echo "$passed passed, $failed failed, $skipped skipped"
+    [ "$failed" -eq 0 ]
+
 # The environments of the league's systems, each in one version, pinned, in target/league: NAME... or --all; --list lists them
 league-env *NAMES:
     .ci/league-env {{NAMES}}

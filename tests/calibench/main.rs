@@ -44,6 +44,7 @@ mod outputs;
 mod paper;
 mod parts;
 mod peers;
+mod peers_table;
 mod photographs;
 mod plugins;
 mod point;

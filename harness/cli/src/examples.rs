@@ -4,7 +4,13 @@ use clap::Command;
 
 /// Lines as a user types them, and what each is for, by command.
 pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
-    ("list", &[("calibench list methods", "every method with its parameters, their defaults and ranges")]),
+    (
+        "list",
+        &[
+            ("calibench list methods", "every method with its parameters, their defaults and ranges"),
+            ("calibench list peers", "what other tools' numbers mean, by version"),
+        ],
+    ),
     ("show", &[("calibench show corners/noise", "the scenario as it is resolved, and a preview PNG")]),
     (
         "run",

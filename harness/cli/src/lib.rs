@@ -36,6 +36,7 @@ mod orient;
 mod output;
 mod pages;
 mod part;
+mod peers;
 mod photos;
 mod plot;
 mod plugin;

@@ -13,6 +13,7 @@ use clap::ValueEnum;
 use super::context::Context;
 use crate::deliver::print;
 use crate::failure::{Failure, project_failure};
+use crate::peers::peers;
 
 /// What can be listed.
 #[derive(Clone, Copy, ValueEnum)]
@@ -31,6 +32,8 @@ pub enum What {
     Tables,
     /// Figures that records hold, with their groups, units and meanings
     Figures,
+    /// What other tools' numbers mean, by version: RMS, sigmas, origins, orders, directions, and the scripts that asked them
+    Peers,
 }
 
 pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
@@ -42,6 +45,7 @@ pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
         What::Formats => formats(),
         What::Tables => tables(context)?,
         What::Figures => figures(),
+        What::Peers => peers()?,
     })
 }
 
