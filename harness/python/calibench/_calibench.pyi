@@ -469,7 +469,7 @@ def undistort(
     A picture is (rows, columns) or (rows, columns, channels) of uint8, uint16 or float32; of a list all are made with one map. Returned are the
     picture or pictures, the camera that they are of (None on a sphere), and a mask: True where they show something.
     `to` is "pinhole", "equirectangular" or a camera, `frame` "keep", "all" or "crop", `kernel` "linear", "cubic", "lanczos3", "lanczos4",
-    "area" or "spline", which moves no point.
+    "area" or "spline", which moves points least.
     """
 
 def undistort_points(

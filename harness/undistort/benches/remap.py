@@ -3,7 +3,7 @@
     cargo build --release -p calibench-undistort --example time
     python harness/undistort/benches/remap.py target/release/examples/time
 
-Needs opencv-python-headless (5 or 4). Counted is the time of the processor, the best of five: what else runs on the machine does not stand in it.
+Needs opencv-python-headless (5 or 4). Counted is the time of the processor, the best of three: what else runs on the machine does not stand in it.
 """
 
 import subprocess
@@ -19,13 +19,13 @@ WANTED = {"linear": 1.5, "cubic": 1.5, "lanczos4": 3.0}
 
 
 def remap(kernel, channels, bits):
-    """The best of five, ms."""
+    """The best of three, ms."""
     matrix = np.array([[3000, 0, 1990.0], [0, 3000, 1510], [0, 0, 1]])
     maps = cv2.initUndistortRectifyMap(matrix, np.array([-0.2, 0.08, 0.0005, -0.0003, 0]), None, matrix, SIZE, cv2.CV_32FC1)
     shape = SIZE[::-1] if channels == 1 else (*SIZE[::-1], channels)
     picture = np.random.default_rng(1).integers(0, 1 << bits, shape).astype(np.uint8 if bits == 8 else np.uint16)
     made, best = np.empty_like(picture), np.inf
-    for _ in range(5):
+    for _ in range(3):
         begin = time.process_time()
         cv2.remap(picture, *maps, kernel, dst=made)
         best = min(best, time.process_time() - begin)

@@ -8,7 +8,7 @@ use calibench_model::camera::{Camera, ImageSize, OpenCv};
 use calibench_undistort::{Frame, Kernel, Level, Map, Picture, Target, View, framed, resample};
 
 const SIZE: ImageSize = ImageSize { width: 4000, height: 3000 };
-const AGAIN: usize = 5;
+const AGAIN: usize = 3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;

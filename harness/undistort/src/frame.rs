@@ -4,8 +4,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, NoCounterpart, Ray};
 use thiserror::Error;
 
-use crate::View;
-use crate::view::Equirectangular;
+use crate::view::{Equirectangular, View};
 
 /// A new picture is no more than so many times as wide and as high as the photograph.
 const MOST_SIDES: f64 = 4.0;

@@ -6,8 +6,8 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 use rayon::prelude::*;
 
-use crate::View;
 use crate::cell::{Cell, Run, SIDE, Shape};
+use crate::view::View;
 
 /// Where each pixel of a picture lies in another, the source, to better than 1e-3 px: made once, used for every photograph of a camera.
 ///

@@ -2,7 +2,7 @@
 
 use calibench_model::{Affine, Covariance, PixelPoint, Start};
 
-use crate::View;
+use crate::view::View;
 
 /// Half the distance over which differences are taken, px.
 const STEP: f64 = 0.25;

@@ -37,7 +37,7 @@ pub struct Undistort {
     /// Scale on the axis, as a share of the photographs'
     #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = crate::convert::positive, allow_negative_numbers = true)]
     scale: f64,
-    /// How levels between pixels are found; `spline` moves no point, `area` is for pictures that shrink
+    /// How levels between pixels are found; `spline` moves points least, `area` is for pictures that shrink
     #[arg(long, value_name = "KERNEL", default_value = "cubic", value_parser = kernel)]
     kernel: Kernel,
     /// Back again: what is given are pictures of the new camera, what is made has the distortion of --camera

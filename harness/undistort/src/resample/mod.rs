@@ -1,8 +1,11 @@
 //! Pictures through maps.
 
+mod job;
+mod pairs;
 mod planes;
 mod spline;
 mod squares;
+mod taps;
 
 use std::ops::Range;
 
@@ -10,25 +13,10 @@ use rayon::prelude::*;
 
 use crate::kernel::Kernel;
 use crate::map::Map;
-use crate::picture::{Picture, PictureError, Sample};
-use squares::{Job, Weights};
-
-/// Rows of the source that a kernel asks for above and below the places of a map.
-pub fn reach(kernel: Kernel, map: &Map) -> usize {
-    kernel.taps() / 2
-        + match kernel {
-            Kernel::Spline => spline::MARGIN,
-            Kernel::Area => map.shrinks().ceil() as usize,
-            _ => 0,
-        }
-}
-
-/// Levels that can be resampled: of 8 and 16 bits, and single precision.
-pub trait Level: Sample + squares::Sampled {}
-
-impl Level for u8 {}
-impl Level for u16 {}
-impl Level for f32 {}
+use crate::picture::{Picture, PictureError};
+use job::{Job, Weights};
+pub use planes::reach;
+pub use squares::Level;
 
 /// Makes `rows` of the picture that `map` describes from `picture`, its source, of which the rows [`Map::rows_for`] with [`reach`] must be there.
 ///

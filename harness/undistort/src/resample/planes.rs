@@ -5,7 +5,9 @@ use std::ops::Range;
 use calibench_model::camera::ImageSize;
 use rayon::prelude::*;
 
-use super::{Job, Level, Weights, reach, spline, squares};
+use super::job::{Job, Weights};
+use super::squares::Level;
+use super::{spline, squares};
 use crate::cell::{Cell, SIDE};
 use crate::kernel::Kernel;
 use crate::map::Map;
@@ -13,6 +15,16 @@ use crate::picture::{Picture, PictureError};
 
 /// Squares of a map along a side of a block, which is made for itself.
 const BLOCK: usize = 8;
+
+/// Rows of the source that a kernel asks for above and below the places of a map.
+pub fn reach(kernel: Kernel, map: &Map) -> usize {
+    kernel.taps() / 2
+        + match kernel {
+            Kernel::Spline => spline::MARGIN,
+            Kernel::Area => map.shrinks().ceil() as usize,
+            _ => 0,
+        }
+}
 
 /// A block of squares.
 struct Block<'a> {

@@ -66,7 +66,7 @@ fn first(plane: &mut [f32], width: usize, height: usize, pole: f32) {
     let mut power = 1.0;
     for row in 1..=MARGIN as i64 {
         power *= pole;
-        let from = super::squares::mirrored(row, height) * width;
+        let from = super::job::mirrored(row, height) * width;
         for (sum, level) in sums.iter_mut().zip(&plane[from..from + width]) {
             *sum += power * level;
         }
@@ -90,9 +90,7 @@ mod tests {
             let at = |x: i64, y: i64| {
                 let line = |y: i64| -> f64 {
                     let of = |k: i64| {
-                        f64::from(
-                            plane[super::super::squares::mirrored(y, height) * width + super::super::squares::mirrored(x + k - 2, width)],
-                        )
+                        f64::from(plane[super::super::job::mirrored(y, height) * width + super::super::job::mirrored(x + k - 2, width)])
                     };
                     (0..6).map(|k| weights[k as usize] * of(k)).sum()
                 };

@@ -32,7 +32,7 @@ fn reference(kernel: Kernel, at: PixelPoint, level: impl Fn(usize, usize) -> f64
     let taps = kernel.taps() as i64;
     let (x, y) = (at.x.floor(), at.y.floor());
     let (across, down) = (kernel.weights(at.x - x), kernel.weights(at.y - y));
-    let index = |whole: f64, tap: i64, count: u32| squares::mirrored(whole as i64 + tap - (taps / 2 - 1), count as usize);
+    let index = |whole: f64, tap: i64, count: u32| job::mirrored(whole as i64 + tap - (taps / 2 - 1), count as usize);
     let line = |row: usize| -> f64 { (0..taps).map(|tap| across[tap as usize] * level(index(x, tap, SIZE.width), row)).sum() };
     (0..taps).map(|tap| down[tap as usize] * line(index(y, tap, SIZE.height))).sum()
 }
