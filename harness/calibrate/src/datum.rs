@@ -65,7 +65,7 @@ fn minimal(text: &str) -> Option<DatumChoice> {
 
 impl DatumChoice {
     /// Whether control points are start values only.
-    pub(super) fn is_minimal(&self) -> bool {
+    pub fn is_minimal(&self) -> bool {
         matches!(self, Self::Free | Self::FreeOver(_) | Self::Minimal { .. })
     }
 

@@ -2,6 +2,7 @@
 
 mod broken;
 mod doubts;
+mod free;
 mod gross;
 mod known;
 mod network;

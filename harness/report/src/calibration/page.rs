@@ -147,10 +147,11 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let mut lines: Vec<String> = (0..calibration.cameras()).filter_map(|camera| over_frame(calibration, camera)).chain(models).collect();
     lines.extend([
         format!(
-            "{} images, {} image points, {control} of {} targets are control points",
+            "{} images, {} image points, {control} of {} targets {}",
             solution.poses().len(),
             prepared.network.observations.len(),
-            prepared.network.points.len()
+            prepared.network.points.len(),
+            if settings.datum.is_minimal() { "start from coordinates, none is held" } else { "are control points" }
         ),
         format!("datum: {}", settings.datum.words()),
     ]);
