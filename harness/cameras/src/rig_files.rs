@@ -4,7 +4,7 @@ use calibench_model::NamedCamera;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::named_camera::Pose;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::formats::yaml_matrix as matrix;
 use crate::number::shortest;
@@ -72,7 +72,7 @@ fn rectified(
     (k1, k2): (&Matrix3<f64>, &Matrix3<f64>),
     (r, t): (&Matrix3<f64>, &Vector3<f64>),
 ) -> Option<Vec<(&'static str, usize, Vec<f64>)>> {
-    let half = Rotation3::new(Rotation3::from_matrix_unchecked(*r).scaled_axis() * -0.5);
+    let half = Rotation3::new(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*r)).scaled_axis() * -0.5);
     let turned = half * t;
     let axis = usize::from(turned.x.abs() <= turned.y.abs());
     let mut along = Vector3::zeros();
