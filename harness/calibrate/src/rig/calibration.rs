@@ -1,7 +1,7 @@
 //! The adjustment of a rig, and what is to be said of it.
 
 use calibench_adjust::{
-    Distance, Found, Options, RigCovariances, RigSolution, Use, Variance, adjust_rig, frame_weight, scale_of, snoop_rig,
+    AdjustError, Distance, Found, Options, RigCovariances, RigSolution, Use, Variance, adjust_rig, frame_weight, scale_of, snoop_rig,
 };
 use calibench_model::NamedCamera;
 use calibench_model::named_camera::{ParameterCovariance, PoseFrame};
@@ -62,7 +62,12 @@ pub struct RigCamera {
 /// # Errors
 /// An adjustment that does not converge or whose unknowns are not determined, by name.
 pub fn calibrate_rig(prepared: &RigPrepared) -> Result<RigCalibration<'_>, CalibrationError> {
-    let (solution, found) = adjusted(prepared)?;
+    let (solution, found) = adjusted(prepared).map_err(|error| match error {
+        CalibrationError::Adjust(why @ AdjustError::NotConverged { .. }) => CalibrationError::Rig(format!(
+            "no rig that images of one moment see at once: {why}; are the pairs of images of one moment (--sync, --times), and did no camera move?"
+        )),
+        other => other,
+    })?;
     let left_out: Vec<usize> = found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
     let variance = if solution.counts().redundancy() > 0 { Variance::Estimated } else { Variance::Apriori };
     let covariances = solution.covariances(variance)?;

@@ -3,7 +3,7 @@
 use calibench_adjust::{Mount, Options, Rig, RigSolution, adjust_rig, relative};
 use calibench_model::Pose;
 use calibench_model::camera::CameraModel;
-use nalgebra::{DMatrix, Matrix6, Rotation3, Vector6};
+use nalgebra::{DMatrix, Matrix6, Rotation3, UnitQuaternion, Vector6};
 use rayon::prelude::*;
 
 use crate::resampled::{GROUPS, MOST, NEAR};
@@ -68,7 +68,8 @@ impl BySets {
 /// From one pose to a near one: rotation about its axes, radians, and shift along them.
 pub(super) fn motion(from: &Pose, to: &Pose) -> Vector6<f64> {
     let step = relative(from, to);
-    let turn = Rotation3::from_matrix_unchecked(step.rotation).scaled_axis();
+    // The angle of a matrix by its trace is lost where it is small.
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(step.rotation)).scaled_axis();
     Vector6::new(turn.x, turn.y, turn.z, -step.centre.x, -step.centre.y, -step.centre.z)
 }
 

@@ -1,6 +1,6 @@
 //! How far two rigs differ in what they are used for: places of points that two cameras see, and where one camera's points are looked for in the other.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::camera::{Camera, CameraModel};
 use crate::frames::PixelPoint;
@@ -50,7 +50,8 @@ pub fn rig_difference(first: [&NamedCamera; 2], second: [&NamedCamera; 2], dista
         return Err(format!("no point at a distance of {distance} is in the images of both cameras"));
     }
     let rms = |of: [f64; 2]| [(of[0] / points as f64).sqrt(), of[1]];
-    let turn = nalgebra::Rotation3::from_matrix_unchecked(b.rotation * a.rotation.transpose());
+    // The angle of a matrix by its trace is lost where it is small.
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(b.rotation * a.rotation.transpose()));
     Ok(RigDifference {
         moved: (b.centre - a.centre).norm(),
         baselines: [a.centre.norm(), b.centre.norm()],
@@ -131,7 +132,10 @@ mod tests {
         let at = |x: f64| Pose { position: [x, 0.0, 0.0], ..Pose::IDENTITY };
         let (one, two, other) = (camera(1000.0, Pose::IDENTITY), camera(1000.0, at(0.2)), camera(1000.0, at(0.202)));
         let same = rig_difference([&one, &two], [&one, &two], 2.0).unwrap();
-        assert!(same.moved == 0.0 && same.at_distance[1] < 1e-12 && same.px[1] < 1e-9 && same.points > 200, "{same:?}");
+        assert!(
+            same.moved == 0.0 && same.turned_deg == 0.0 && same.at_distance[1] < 1e-12 && same.px[1] < 1e-9 && same.points > 200,
+            "{same:?}"
+        );
         let found = rig_difference([&one, &two], [&one, &other], 2.0).unwrap();
         assert!((found.px[0] - 1000.0 * 0.002 / 2.0).abs() < 1e-9 && (found.moved - 0.002).abs() < 1e-15, "{found:?}");
         // On the axis by D db / b; off it a little more.

@@ -6,6 +6,8 @@ use calibench_calibrate::few;
 use calibench_calibrate::rig::RigCalibration;
 use calibench_model::camera::CameraModel;
 
+use nalgebra::{Rotation3, UnitQuaternion};
+
 use super::digits::rounded;
 use crate::markdown::{MarkdownTable, plain};
 
@@ -64,7 +66,7 @@ fn facts(found: &RigCalibration<'_>) -> Vec<String> {
         ));
     }
     if !names.is_empty() {
-        lines.push(format!("without a partner: {} images, {}", names.len(), few(&names)));
+        lines.push(format!("without a partner: {} ({})", few(&names), names.len()));
     }
     lines.extend(prepared.left_out_words());
     let left_out = found.found.iter().filter(|found| found.left_out).count();
@@ -77,7 +79,7 @@ fn facts(found: &RigCalibration<'_>) -> Vec<String> {
         "{} unknowns, redundancy {}, cost {}, sigma0 {sigma0}",
         counts.unknowns,
         counts.redundancy(),
-        plain(solution.cost())
+        cost(solution.cost())
     ));
     lines.push(format!("residuals {} px RMS", plain(found.rms_px())));
     lines.push(match &found.one_rig {
@@ -97,12 +99,17 @@ fn facts(found: &RigCalibration<'_>) -> Vec<String> {
         let far = held.moves.iter().copied().fold(0.0, f64::max);
         lines.push(format!(
             "with the cameras held as their files say: cost {}, p {:.2e}; a camera sits up to {} away",
-            plain(held.cost),
+            cost(held.cost),
             held.p,
             plain(far)
         ));
     }
     lines
+}
+
+/// A sum of squares as far as others may print it.
+fn cost(value: f64) -> String {
+    if value < 1.0 { plain(value) } else { format!("{value:.4}") }
 }
 
 fn cameras(found: &RigCalibration<'_>) -> MarkdownTable {
@@ -144,7 +151,7 @@ fn mounts(found: &RigCalibration<'_>) -> MarkdownTable {
         }
         let (distance, sigma) = mount.distance();
         row("distance", distance, sigma, sets.map(|sets| sets.distance().1));
-        let turn = nalgebra::Rotation3::from_matrix_unchecked(mount.pose.rotation).scaled_axis();
+        let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(mount.pose.rotation)).scaled_axis();
         for (axis, what) in ["rotation x", "rotation y", "rotation z"].into_iter().enumerate() {
             let own = sets.map(|sets| sets.rotation_sigmas()[axis].to_degrees());
             row(what, (sign[axis] * turn[axis]).to_degrees(), mount.rotation_sigmas()[axis].to_degrees(), own);
