@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use crate::project::{root, run, stderr, stdout};
 
-const NETWORK: [&str; 9] = ["calibrate", "--points", "points.csv", "--size", "4032x3024", "--sigma", "0.25", "--distances", "distances.csv"];
+const NETWORK: [&str; 9] =
+    ["calibrate", "--points", "points.csv", "--size", "4032x3024", "--sigma", "0.25", "--distances", "distances.csv"];
 const ASKED: [&str; 5] = ["--length", "T01,T20", "--length", "T05,T33", "--json"];
 
 fn example() -> tempfile::TempDir {
@@ -130,7 +131,8 @@ fn what_does_not_go_is_said() {
     // Two halves that nothing joins.
     edit(folder.path(), "points.csv", |text| {
         let of = |line: &str| line.split(',').next().and_then(|image| image.strip_prefix("photo")).is_some_and(|n| n > "10");
-        text.lines().map(|line| if of(line) { line.replacen(',', ",other", 1) } else { line.to_owned() }).collect::<Vec<_>>().join("\n") + "\n"
+        text.lines().map(|line| if of(line) { line.replacen(',', ",other", 1) } else { line.to_owned() }).collect::<Vec<_>>().join("\n")
+            + "\n"
     });
     let error = refused(&[&NETWORK[..5], &["--plain"]].concat());
     assert!(error.contains("do not hang together with the others: photo") && error.lines().count() < 4, "{error}");
@@ -142,7 +144,8 @@ fn what_does_not_go_is_said() {
 fn a_network_of_others_is_as_another_program_adjusts_it() {
     let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into);
     let folder = data.join("rigs/freenet-aicon");
-    let arguments = ["calibrate", "--points", "points.csv", "--size", "8688x5792", "--model", "opencv5", "--sigma", "0.1", "--plain", "--json"];
+    let arguments =
+        ["calibrate", "--points", "points.csv", "--size", "8688x5792", "--model", "opencv5", "--sigma", "0.1", "--plain", "--json"];
     let more = ["--distances", "distances.csv", "--length", "6,8", "--length", "14,12", "--length", "133,117"];
     let (_, found) = answer(&folder, &[&arguments[..], &more].concat());
     let reference: Value = serde_json::from_str(&std::fs::read_to_string(folder.join("reference.json")).unwrap()).unwrap();

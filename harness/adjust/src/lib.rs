@@ -27,8 +27,8 @@ mod undetermined;
 pub use defect::{Defect, Direction, Reason};
 pub use error::AdjustError;
 pub use network::{
-    Attitude, Centre, Counts, Datum, DistanceObservation, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, OnSurface, Precision,
-    Status, Surface,
+    Attitude, Centre, Counts, Datum, DistanceObservation, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint,
+    OnSurface, Precision, Status, Surface,
 };
 pub use quality::{
     Comparison, Correlation, Covariances, Distance, Found, Held, Length, ObservedReliability, PointReliability, Reliability, Residual,

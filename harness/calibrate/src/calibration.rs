@@ -9,7 +9,7 @@ use calibench_model::NamedCamera;
 use calibench_model::camera::Camera;
 use calibench_model::named_camera::ParameterCovariance;
 
-use crate::doubt::Verdicts;
+use crate::allowed::Verdicts;
 use crate::ended::{ITERATIONS, ended};
 use crate::{CalibrationError, Checked, Compared, Doubt, GrossErrors, OverFrame, Prepared, Resampled};
 

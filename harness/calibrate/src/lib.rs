@@ -1,6 +1,7 @@
 //! From measured points to a calibrated camera, for users: start values without truth, the adjustment, and what is to be said of it.
 
 mod against_gross;
+mod allowed;
 mod board_shape;
 mod board_solver;
 mod calibration;

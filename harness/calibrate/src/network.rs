@@ -80,7 +80,12 @@ pub(super) fn lengths(survey: &Survey, settings: &Settings, network: &Network) -
     let end = |name: &String| {
         target(survey, "length", name)?;
         let why = || "it has no coordinates".to_owned();
-        place.get(name.as_str()).copied().ok_or_else(|| CalibrationError::LengthTarget { of: "length", target: name.clone(), why: why(), near: None })
+        place.get(name.as_str()).copied().ok_or_else(|| CalibrationError::LengthTarget {
+            of: "length",
+            target: name.clone(),
+            why: why(),
+            near: None,
+        })
     };
     let both = |[from, to]: &[String; 2]| match from == to {
         true => Err(CalibrationError::LengthTarget { of: "length", target: from.clone(), why: "both ends are it".into(), near: None }),

@@ -92,7 +92,10 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         &[
             ("calibench calibrate a.jpg b.jpg c.jpg --chessboard 9x6:25 -o camera.yaml --report page", "from photographs"),
             ("calibench calibrate --points points.csv --control control.csv --size 4272x2848 -o camera.yaml", "from points"),
-            ("calibench calibrate --points points.csv --distances bars.csv --size 8688x5792 --length 6,8", "from points without coordinates, and scale bars"),
+            (
+                "calibench calibrate --points points.csv --distances bars.csv --size 8688x5792 --length 6,8",
+                "from points without coordinates, and scale bars",
+            ),
             ("calibench calibrate a.jpg b.jpg --board aprilgrid:6x6:0.088:0.3 --json", "the answer for a program"),
             (
                 "calibench calibrate left*.png right*.png --board 9x6:25 --rig left,right --sync left*.png=right*.png -o rig",

@@ -66,13 +66,22 @@ mod tests {
     #[test]
     fn mistakes_have_a_line_and_a_column() {
         for (text, expected) in [
-            ("target_a,distance,sigma\na,1,2\n", "d.csv:1, column `target_b`: missing in the header; every file of distances has target_a,target_b,distance,sigma"),
-            ("target_a,target_b,distance,sigma,x\na,b,1,2,3\n", "d.csv:1, column `x`: unknown; file of distances has target_a, target_b, distance, sigma"),
+            (
+                "target_a,distance,sigma\na,1,2\n",
+                "d.csv:1, column `target_b`: missing in the header; every file of distances has target_a,target_b,distance,sigma",
+            ),
+            (
+                "target_a,target_b,distance,sigma,x\na,b,1,2,3\n",
+                "d.csv:1, column `x`: unknown; file of distances has target_a, target_b, distance, sigma",
+            ),
             ("target_a,target_b,distance,sigma\na,a,1,2\n", "d.csv:2, column `target_b`: is `a` too; expected another target"),
             ("target_a,target_b,distance,sigma\na,,1,2\n", "d.csv:2, column `target_b`: is empty; expected a name"),
             ("target_a,target_b,distance,sigma\na,b,0,2\n", "d.csv:2, column `distance`: expected a positive length, found `0`"),
             ("target_a,target_b,distance,sigma\na,b,1,-2\n", "d.csv:2, column `sigma`: expected a positive standard deviation, found `-2`"),
-            ("target_a,target_b,distance,sigma\na,b,1,2\nb,a,1,2\n", "d.csv:3, column `target_a`: `b` and `a` are already on line 2; expected each pair once"),
+            (
+                "target_a,target_b,distance,sigma\na,b,1,2\nb,a,1,2\n",
+                "d.csv:3, column `target_a`: `b` and `a` are already on line 2; expected each pair once",
+            ),
             ("target_a,target_b,distance,sigma\n", "d.csv: holds no row"),
         ] {
             let error = parse_distances("d.csv", text.as_bytes()).unwrap_err().to_string();

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Matrix3;
 
-use super::distances;
+use super::distances::Stretch;
 use super::image_equations::{Lost, Residual, Setting, View};
 use super::observed_unknowns;
 use super::projection::{Optics, POSE};
@@ -82,7 +82,7 @@ pub(crate) fn linearise(
         }
     }
     observed_unknowns::add(network, layout, state, into);
-    distances::add(network, layout, state, into);
+    into.add_distances(network, layout, state);
     into.hold(layout);
     Ok(())
 }
@@ -259,6 +259,24 @@ impl Normals {
                     (0..3).for_each(|i| block[i * width + j] += dot(by[i], column));
                 }
             }
+        }
+    }
+
+    /// What the distances say of the points at their ends.
+    fn add_distances(&mut self, network: &Network, layout: &Layout, state: &State) {
+        self.point_point.clear();
+        for distance in &network.distances {
+            let Stretch { length, slopes } = Stretch::of(layout, state, distance);
+            let (p, w) = (1.0 / (distance.sigma * distance.sigma), distance.value - length);
+            for (point, slope) in distance.points.into_iter().zip(&slopes) {
+                for i in 0..3 {
+                    (0..3).for_each(|j| self.point[point][3 * i + j] += p * slope[i] * slope[j]);
+                    self.point_right[point][i] += p * w * slope[i];
+                }
+            }
+            let [from, to] = &slopes;
+            self.point_point.push(std::array::from_fn(|k| p * from[k / 3] * to[k % 3]));
+            self.cost += p * w * w;
         }
     }
 

@@ -73,9 +73,8 @@ impl Solution<'_> {
         let ends = self.engine.network.distances[index].points;
         if let Some([low, high]) = plan.joint(ends) {
             let [a, b] = if plan.point_block[ends[0]] == low { [0, 1] } else { [1, 0] };
-            let form = |q: &[f64], a: usize, b: usize| {
-                (0..9).map(|k| stretch.slopes[a][k / 3] * q[k] * stretch.slopes[b][k % 3]).sum::<f64>()
-            };
+            let form =
+                |q: &[f64], a: usize, b: usize| (0..9).map(|k| stretch.slopes[a][k / 3] * q[k] * stretch.slopes[b][k % 3]).sum::<f64>();
             let across = inverse.block(plan, low, high);
             return form(&inverse.block(plan, low, low), a, a) + form(&inverse.block(plan, high, high), b, b) + 2.0 * form(&across, a, b);
         }

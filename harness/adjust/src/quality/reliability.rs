@@ -289,7 +289,12 @@ impl Solution<'_> {
         }
         for (index, distance) in network.distances.iter().enumerate() {
             let stretch = Stretch::of(&self.engine.layout, state, distance);
-            add(network.name_of_distance(distance), stretch.length - distance.value, distance.sigma, self.of_distance(inverse, index, &stretch));
+            add(
+                network.name_of_distance(distance),
+                stretch.length - distance.value,
+                distance.sigma,
+                self.of_distance(inverse, index, &stretch),
+            );
         }
         found
     }

@@ -3,6 +3,7 @@
 //! An image's pose is mount x station: the station is where the rig stood, the mount where a camera sits on it. What an image says of its pose (the normal equations that
 //! any image has) is said of both through the adjoint of the mount, so that stations are eliminated one by one, and interiors and mounts stay.
 
+mod cofactors;
 mod equations;
 mod frames;
 mod place;

@@ -4,9 +4,9 @@ use calibench_model::Pose;
 use calibench_model::camera::Camera;
 
 use super::Rig;
+use super::cofactors::Cofactors;
 use super::equations::{Frame, RigState};
 use super::place::{End, minimum};
-use super::quality::Cofactors;
 use super::undetermined::{singular, unconnected};
 use crate::AdjustError;
 use crate::network::{Counts, ImageObservation, Layout};

@@ -4,8 +4,8 @@ use calibench_model::camera::{Camera, ImageSize, OpenCv};
 use calibench_model::{Covariance, PixelPoint, Pose};
 use nalgebra::{DMatrix, DVector, Point3, Rotation3, Vector3, Vector6};
 
+use super::cofactors::Cofactors;
 use super::equations::{Frame, RigNormals, RigState, RigStep};
-use super::quality::Cofactors;
 use super::{Rig, Station, adjoint, mounted, relative};
 use crate::network::{Exterior, ImageObservation, Interior, Layout, Network, ObjectPoint, Precision, Status};
 use crate::normal::{Loss, Scratch};

@@ -21,8 +21,7 @@ fn distance(network: &Network, points: [usize; 2], sigma: f64, off: f64) -> Dist
 
 fn with_bars(mut network: Network) -> Network {
     let ends = [[0, 9], [4, 13], [9, 4], [2, 17]];
-    network.distances =
-        ends.into_iter().zip([0.4, -1.1, 0.7, 0.2]).map(|(ends, off)| distance(&network, ends, 1e-3, off)).collect();
+    network.distances = ends.into_iter().zip([0.4, -1.1, 0.7, 0.2]).map(|(ends, off)| distance(&network, ends, 1e-3, off)).collect();
     network
 }
 

@@ -101,7 +101,9 @@ fn blocks_are_those_of_the_whole_inverse() {
         shaken(network, 5)
     };
     let of_bars = [bars(cameras()), bars(points_kept()), bars(at_random())];
-    for network in [cameras(), points_kept(), at_random(), board(), ring(), shaken(networks::vosselman_foerstner(), 6)].into_iter().chain(of_bars) {
+    for network in
+        [cameras(), points_kept(), at_random(), board(), ring(), shaken(networks::vosselman_foerstner(), 6)].into_iter().chain(of_bars)
+    {
         for huber in [None, Some(1.0)] {
             let solution = adjust(&network, &Options { huber, ..Options::default() }).unwrap_or_else(|error| panic!("{error}"));
             let full = solution.full_covariance(Variance::Apriori).unwrap();

@@ -4,8 +4,8 @@ use calibench_adjust::{Datum, Network, ObjectPoint, Options, Solution, Status, V
 use calibench_model::upper_median;
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::Allowed;
 use crate::Calibration;
+use crate::allowed::Allowed;
 use crate::datum::DatumChoice;
 use crate::resampled::NEAR;
 

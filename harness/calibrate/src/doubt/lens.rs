@@ -3,8 +3,8 @@
 use calibench_adjust::{Network, Options, Status, adjust};
 use calibench_model::camera::{Camera, CameraModel, OpenCv};
 
-use super::Allowed;
 use crate::Calibration;
+use crate::allowed::Allowed;
 use crate::resampled::NEAR;
 
 /// Standard deviation of the coefficients of a denominator about zero: they may take any value that lenses have, and stay where observations do not say.

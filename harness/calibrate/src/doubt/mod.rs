@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::join;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use crate::allowed::{Allowed, Verdicts};
 use crate::ended::ended;
 use crate::resampled::MOST;
 use crate::{Calibration, Checked, Doubt, Finding, OverFrame, Resampled, SHARE, Subject, Verdict};
@@ -43,34 +44,6 @@ enum Cameras {
     Others(Vec<Camera>),
     /// By so much, to first order, in their unknown parameters: of each camera those of [`calibench_adjust::Covariances::of_camera`].
     Changed(Vec<DVector<f64>>),
-}
-
-/// The verdicts on gross errors, and on control, lens and shutter, each by itself.
-pub(crate) type Verdicts = (Verdict, [Allowed; 3]);
-
-/// The verdict after allowing for one more kind of unknown.
-#[derive(Clone, Debug)]
-pub(crate) struct Allowed {
-    verdict: Verdict,
-    /// No image point is in gross error then.
-    is_clean: bool,
-}
-
-impl Allowed {
-    fn untested(why: &str) -> Self {
-        Self { verdict: Verdict::Untested(why.into()), is_clean: false }
-    }
-
-    fn is_structure(&self) -> bool {
-        matches!(self.verdict, Verdict::Doubt(..) | Verdict::Slight(..))
-    }
-
-    fn explains(&self) -> f64 {
-        match self.verdict {
-            Verdict::Doubt(Finding { explains, .. }, _) | Verdict::Slight(Finding { explains, .. }, _) => explains,
-            _ => 0.0,
-        }
-    }
 }
 
 impl Calibration<'_> {

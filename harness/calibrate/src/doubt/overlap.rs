@@ -1,7 +1,7 @@
 //! What is said where causes overlap: gross errors look like structures, and one structure like another.
 
-use super::Allowed;
 use crate::Verdict;
+use crate::allowed::Allowed;
 
 /// Share of the variance that a structure must explain to be no shadow of gross errors.
 pub(super) const EXPLAINED: f64 = 0.5;

@@ -4,8 +4,9 @@ use calibench_adjust::{Attitude, Centre, Status};
 use calibench_model::PixelPoint;
 
 use super::motion::Moving;
-use super::{Allowed, Cameras, Richer};
+use super::{Cameras, Richer};
 use crate::Calibration;
+use crate::allowed::Allowed;
 use crate::resampled::GROUPS;
 
 /// A motion from row to row that explains so many times as much as one from column to column is of the shutter.

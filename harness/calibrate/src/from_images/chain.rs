@@ -174,7 +174,10 @@ impl<'s> Chain<'s> {
                 .iter()
                 .filter_map(|&image| Some(Exterior::free(self.survey.images[image].clone(), self.owners[image], self.poses[image]?)))
                 .collect(),
-            points: targets.iter().filter_map(|&target| Some(ObjectPoint::free(self.survey.target(target), self.points[target]?))).collect(),
+            points: targets
+                .iter()
+                .filter_map(|&target| Some(ObjectPoint::free(self.survey.target(target), self.points[target]?)))
+                .collect(),
             observations: sights
                 .iter()
                 .filter(|sight| point[sight.target] != usize::MAX)

@@ -76,7 +76,9 @@ fn coordinates(survey: &Survey, settings: &Settings) -> Result<Vec<ControlRow>, 
     if !lost.is_empty() {
         let names = crate::few(&lost);
         let count = lost.len();
-        let why = format!("{count} of {all} images do not hang together with the others: {names}; expected six targets or more in common with them");
+        let why = format!(
+            "{count} of {all} images do not hang together with the others: {names}; expected six targets or more in common with them"
+        );
         return Err(CalibrationError::NoModel { why });
     }
     if misfit > BAD {

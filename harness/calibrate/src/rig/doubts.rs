@@ -4,48 +4,7 @@ use calibench_adjust::Mount;
 use nalgebra::DMatrix;
 
 use super::calibration::RigCalibration;
-
-/// What of a rig is in doubt.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RigSubject {
-    /// The cameras are not one rig.
-    OneRig,
-    /// How well a camera is known over its frame.
-    OverFrame,
-    /// How well it is known where a camera sits.
-    Mount,
-    /// Errors that belong together in a set.
-    Together,
-    /// The camera files that the cameras started from.
-    Files,
-    /// Image points in gross error.
-    GrossErrors,
-}
-
-impl RigSubject {
-    /// The name for programs.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::OneRig => "one-rig",
-            Self::OverFrame => "over-frame",
-            Self::Mount => "mount",
-            Self::Together => "together",
-            Self::Files => "files",
-            Self::GrossErrors => "gross-errors",
-        }
-    }
-}
-
-/// Why a rig is in doubt. With any the exit code is 3.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RigDoubt {
-    /// What is in doubt.
-    pub subject: RigSubject,
-    /// The camera that it is about; `None` where it is about all.
-    pub camera: Option<usize>,
-    /// The most likely cause, and what to do.
-    pub words: String,
-}
+use super::doubted::{RigDoubt, RigSubject};
 
 /// Probability of a finding by chance, below which it is none.
 const ALPHA: f64 = 1e-4;

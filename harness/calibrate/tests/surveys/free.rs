@@ -20,7 +20,8 @@ fn scene(seed: u64) -> Scene {
     distortion[..3].copy_from_slice(&[-0.12 + 0.1 * number(0), 0.04, 0.0]);
     let camera: Camera = OpenCv { size: SIZE, fx: focal, fy: focal, cx: 820.0, cy: 585.0, distortion, coefficients: 5 }.into();
     let depth = [500.0, 900.0, 150.0][seed as usize % 3];
-    let target = |i: usize| Point3::new(1600.0 * (number(3 * i + 7) - 0.5), 1200.0 * (number(3 * i + 8) - 0.5), depth * (number(3 * i + 9) - 0.5));
+    let target =
+        |i: usize| Point3::new(1600.0 * (number(3 * i + 7) - 0.5), 1200.0 * (number(3 * i + 8) - 0.5), depth * (number(3 * i + 9) - 0.5));
     let away = 2200.0 * focal / 1600.0;
     let count = 8 + seed as usize % 5;
     let station = |i: usize| {
@@ -96,9 +97,9 @@ fn images_that_nothing_joins_are_named() {
     far.poses.truncate(2);
     let mut points = near.points();
     let apart = far.points();
-    let rows = apart.iter().map(|row| (format!("apart_{}", row.image), format!("other_{}", row.target), row.start.position));
+    let rows = apart.rows().map(|row| (format!("apart_{}", row.image), format!("other_{}", row.target), row.start.position));
     let mut text = String::from("image,target,x,y\n");
-    for row in points.iter() {
+    for row in points.rows() {
         text += &format!("{},{},{},{}\n", row.image, row.target, row.start.position.x, row.start.position.y);
     }
     rows.for_each(|(image, target, at)| text += &format!("{image},{target},{},{}\n", at.x, at.y));

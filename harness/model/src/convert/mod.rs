@@ -11,7 +11,6 @@ mod fit;
 mod grid;
 mod mistake;
 mod naive;
-mod rig_difference;
 mod rotation;
 mod target;
 #[cfg(test)]
@@ -31,7 +30,6 @@ pub use difference::{Compensated, Difference, DifferenceOptions, difference, dif
 pub use grid::{Region, Spread, Vector, cell_share};
 pub use mistake::{Mistake, mistaken};
 pub use naive::{Tangential, from_naive, naive};
-pub use rig_difference::{RigDifference, rig_difference};
 pub use rotation::Rotation;
 pub use target::Target;
 pub use tool::Tool;

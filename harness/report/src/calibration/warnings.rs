@@ -118,6 +118,10 @@ fn weights(calibration: &Calibration<'_>) -> Option<String> {
     let weighted = calibration.solution.counts().observed > 0;
     let sigma0 = calibration.solution.sigma0().filter(|sigma0| *sigma0 > 0.0 && !(0.67..=1.5).contains(sigma0))?;
     let sigma = settings.sigma();
-    (weighted && settings.sigma_px.is_none())
-        .then(|| format!("control or distances are weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
+    (weighted && settings.sigma_px.is_none()).then(|| {
+        format!(
+            "control or distances are weighted against an assumed {sigma} px for image coordinates; try --sigma {}",
+            plain(sigma * sigma0)
+        )
+    })
 }
