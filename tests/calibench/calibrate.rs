@@ -361,7 +361,7 @@ fn bad_input_is_named() {
         (vec!["judge", "--board", "9x6:25", "--size", "640x480", "--points", "a=p.csv", "--bits", "12"], "--bits: for photographs"),
         (with(&["--to", "opencv5"]), "--output"),
         (with(&["--start", "c.csv"]), "no camera file that is known"),
-        (vec!["calibrate", "--points", "p.csv"], "--control"),
+        (vec!["calibrate", "--points", "p.csv"], "--size"),
         (vec!["calibrate", "a.png", "--chessboard", "9x6"], "expected inner corners and the side of a square"),
         (vec!["calibrate", "a.png", "--chessboard", "9x6:25"], "a.png: No such file"),
         (vec!["resect", "--camera", "c.csv", "--points", "p.csv", "--control", "c.csv"], "no camera file that is known"),

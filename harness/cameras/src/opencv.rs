@@ -86,21 +86,17 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
     Ok(cameras)
 }
 
-/// The second of two cameras against the first, where the file says it as OpenCV's stereo sample does.
+/// The second of two cameras against the first, where the file says it as OpenCV's stereo sample does. Matrices of these names that are something else are
+/// passed over.
 fn between(root: &Entry) -> Result<Option<Pose>, CameraFileError> {
     let (Some(r), Some(t)) = (root.key(OF_PAIR[0])?, root.key(OF_PAIR[1])?) else { return Ok(None) };
-    let of = |entry: &Entry, name: &str, count: usize| {
-        let found = entry.matrix(9).map_err(|error| placed(error, name, entry))?;
-        let right = found.data.len() == count;
-        if right {
-            Ok(found.data)
-        } else {
-            Err(placed(CameraFileError::new(format!("expected {count} numbers, found {}", found.data.len())), name, entry))
-        }
-    };
-    let (rotation, t) = (of(r, OF_PAIR[0], 9)?, of(t, OF_PAIR[1], 3)?);
+    let of = |entry: &Entry| entry.matrix(9).map(|found| found.data).unwrap_or_default();
+    let (rotation, t) = (of(r), of(t));
+    if rotation.len() != 9 || t.len() != 3 {
+        return Ok(None);
+    }
     let rotation = std::array::from_fn(|i| std::array::from_fn(|j| rotation[3 * i + j]));
-    of_rt(rotation, [t[0], t[1], t[2]]).map(Some).map_err(|error| placed(error, OF_PAIR[0], r))
+    Ok(of_rt(rotation, [t[0], t[1], t[2]]).ok())
 }
 
 /// The camera of a matrix and coefficients, and what was assumed of it.

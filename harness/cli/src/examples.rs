@@ -98,7 +98,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ),
             ("calibench calibrate a.jpg b.jpg --board aprilgrid:6x6:0.088:0.3 --json", "the answer for a program"),
             (
-                "calibench calibrate left*.png right*.png --board 9x6:25 --rig left,right --sync left*.png=right*.png -o rig",
+                "calibench calibrate *.png --board 9x6:25 --rig left,right --sync left*.png=right*.png -o rig",
                 "two cameras on a bar, with files for Kalibr, OpenCV and COLMAP",
             ),
         ],
