@@ -6,8 +6,9 @@ use serde_json::Value;
 
 use crate::project::{root, run, stderr, stdout};
 
-const NETWORK: [&str; 9] =
-    ["calibrate", "--points", "points.csv", "--size", "4032x3024", "--sigma", "0.25", "--distances", "distances.csv"];
+/// Points keep to the middle of the frame: k3 is not determined.
+const NETWORK: [&str; 11] =
+    ["calibrate", "--points", "points.csv", "--size", "4032x3024", "--model", "opencv4", "--sigma", "0.25", "--distances", "distances.csv"];
 const ASKED: [&str; 5] = ["--length", "T01,T20", "--length", "T05,T33", "--json"];
 
 fn example() -> tempfile::TempDir {
@@ -49,7 +50,9 @@ fn lengths_come_from_images_and_bars_alone() {
         let off = number(&length["length"]) - truth;
         assert!(off.abs() < 4.0 * number(&length["sigma"]) && number(&length["sigma"]) < 0.15, "{length}");
     }
-    assert!(number(&lengths[0]["redundancy"]) > 0.2 && lengths[2]["measured"].is_null(), "{lengths:?}");
+    // The bars are known better than the images tell: of what they would be without one the deviation is that of the lengths between targets.
+    let checked = [0, 1].map(|i| number(&lengths[i]["redundancy"]));
+    assert!(checked.iter().all(|r| (0.005..0.05).contains(r)) && lengths[2]["measured"].is_null(), "{lengths:?}");
     let parameter = |name: &str| parameter(&found, name);
     assert!((parameter("fx") - 3150.0).abs() < 2.5 && (parameter("cx") - 2012.4).abs() < 5.0);
     let table = std::fs::read_to_string(folder.path().join("page/distances.csv")).unwrap();
@@ -118,7 +121,7 @@ fn what_does_not_go_is_said() {
         assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
         stderr(&output)
     };
-    let bare = &NETWORK[..7];
+    let bare = &NETWORK[..9];
     std::fs::write(folder.path().join("d.csv"), "target_a,target_b,distance,sigma\nB1,B22,1,0.1\n").unwrap();
     let error = refused(&[bare, &["--distances", "d.csv"]].concat());
     assert!(error.contains("a distance names B22, which takes no part: no image shows it; is it `B2`?"), "{error}");
@@ -134,7 +137,7 @@ fn what_does_not_go_is_said() {
         text.lines().map(|line| if of(line) { line.replacen(',', ",other", 1) } else { line.to_owned() }).collect::<Vec<_>>().join("\n")
             + "\n"
     });
-    let error = refused(&[&NETWORK[..5], &["--plain"]].concat());
+    let error = refused(&[&NETWORK[..7], &["--plain"]].concat());
     assert!(error.contains("do not hang together with the others: photo") && error.lines().count() < 4, "{error}");
 }
 

@@ -458,7 +458,7 @@ def undistort(
     picture: Union[np.ndarray, Sequence[np.ndarray]],
     camera: Camera,
     *,
-    to: Union[str, Camera] = "pinhole",
+    to: Union[str, Camera, None] = None,
     frame: str = "keep",
     scale: float = 1.0,
     kernel: str = "cubic",
@@ -468,7 +468,7 @@ def undistort(
 
     A picture is (rows, columns) or (rows, columns, channels) of uint8, uint16 or float32; of a list all are made with one map. Returned are the
     picture or pictures, the camera that they are of (None on a sphere), and a mask: True where they show something.
-    `to` is "pinhole", "equirectangular" or a camera, `frame` "keep", "all" or "crop", `kernel` "linear", "cubic", "lanczos3", "lanczos4",
+    `to` is "pinhole" (the default), "equirectangular" or a camera, `frame` "keep", "all" or "crop", `kernel` "linear", "cubic", "lanczos3", "lanczos4",
     "area" or "spline", which moves points least.
     """
 
@@ -476,7 +476,7 @@ def undistort_points(
     points: ArrayLike,
     camera: Camera,
     *,
-    to: Union[str, Camera] = "pinhole",
+    to: Union[str, Camera, None] = None,
     frame: str = "keep",
     scale: float = 1.0,
     redistort: bool = False,
