@@ -87,9 +87,11 @@ pub(super) fn lengths(survey: &Survey, settings: &Settings, network: &Network) -
             near: None,
         })
     };
-    let both = |[from, to]: &[String; 2]| match from == to {
-        true => Err(CalibrationError::LengthTarget { of: "length", target: from.clone(), why: "both ends are it".into(), near: None }),
-        false => Ok([end(from)?, end(to)?]),
+    let both = |[from, to]: &[String; 2]| {
+        if from == to {
+            return Err(CalibrationError::LengthTarget { of: "length", target: from.clone(), why: "both ends are it".into(), near: None });
+        }
+        Ok([end(from)?, end(to)?])
     };
     if settings.lengths.is_empty() { Ok(Vec::new()) } else { settings.lengths.iter().map(both).collect() }
 }

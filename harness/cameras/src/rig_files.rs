@@ -106,6 +106,9 @@ fn rectified(
 }
 
 /// COLMAP's rig configuration, as `colmap rig_configurator` reads it: the first camera is the reference sensor, images of a camera lie in a folder of its name.
+///
+/// # Errors
+/// No camera, or one without a pose.
 pub fn colmap_rig(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let origin = cameras.first().and_then(|named| named.pose).ok_or_else(|| CameraFileError::new("the first camera has no pose"))?;
     let mut parts = Vec::new();
@@ -221,7 +224,7 @@ mod tests {
             inside.split(", ").map(|number| number.parse().unwrap()).collect()
         };
         let (q, t) = (numbers("cam_from_rig_rotation"), numbers("cam_from_rig_translation"));
-        let turn = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
+        let turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
         assert!(
             (turn.to_rotation_matrix().matrix() - of_rows(&pair()[1].pose.unwrap())).amax() < 1e-9 && (t[0] + 0.236_693_024_6).abs() < 1e-9
         );

@@ -3,6 +3,12 @@
 //! A [`View`] says which ray each pixel of a picture shows; a [`Map`] of two views says where the pixels of one lie in the other, once for all photographs
 //! of a camera; [`resample`] makes the picture, band by band, with a [`Kernel`].
 
+#![expect(
+    clippy::needless_range_loop,
+    clippy::needless_bitwise_bool,
+    reason = "lanes side by side: loops over places and tests without branches become vectors"
+)]
+
 mod cell;
 mod frame;
 mod kernel;

@@ -119,6 +119,6 @@ impl<'a, T> Picture<'a, T> {
 
     /// Whether the last channel is alpha.
     pub(crate) fn has_alpha(&self) -> bool {
-        self.channels % 2 == 0
+        self.channels.is_multiple_of(2)
     }
 }

@@ -60,7 +60,7 @@ fn rig() -> Rig {
     let mut rig = Rig { mounts: mounts.to_vec(), origin: 1, ..Rig::default() };
     rig.network.cameras = vec![first, Interior::fixed("b", camera(950.0)), last];
     rig.network.points = (0..12)
-        .map(|i| ObjectPoint::fixed(format!("{i}"), Point3::new((i % 4) as f64 * 0.3, (i / 4) as f64 * 0.3, 0.05 * (i % 3) as f64)))
+        .map(|i| ObjectPoint::fixed(format!("{i}"), Point3::new(f64::from(i % 4) * 0.3, f64::from(i / 4) * 0.3, 0.05 * f64::from(i % 3))))
         .collect();
     let precision = Precision::Covariance(Covariance { sxx: 0.5, sxy: 0.2, syy: 0.8 });
     for station in 0..4 {
@@ -72,7 +72,7 @@ fn rig() -> Rig {
             rig.network.images.push(Exterior::free(format!("{camera}/{station}"), camera, pose(0.0)));
             rig.station_of.push(station);
             let pose = rig.pose(image);
-            for point in (0..12).filter(|point| (point + image) % 5 != 0) {
+            for point in (0..12).filter(|point| !(point + image).is_multiple_of(5)) {
                 use calibench_model::camera::CameraModel;
                 let seen = rig.network.cameras[camera].camera.project(pose.ray(&rig.network.points[point].position)).unwrap();
                 let position = PixelPoint::new(seen.x + (point as f64).sin(), seen.y + (point as f64 * 1.7).cos());

@@ -21,8 +21,8 @@ fn rig(stations: usize, free: &[&str], seed: u64) -> Rig {
         rotation: *Rotation3::new(Vector3::new(0.02, turn, -0.03)).matrix(),
         centre: Point3::new(x, 0.01 * x, 0.02),
     };
-    let mut rig = Rig::default();
-    rig.mounts = vec![Pose { rotation: Matrix3::identity(), centre: Point3::origin() }, mount(0.2, -0.15), mount(-0.25, 0.2)];
+    let first = Pose { rotation: Matrix3::identity(), centre: Point3::origin() };
+    let mut rig = Rig { mounts: vec![first, mount(0.2, -0.15), mount(-0.25, 0.2)], ..Rig::default() };
     for name in ["left", "middle", "right"] {
         rig.network.cameras.push(Interior::fixed(name, opencv()).free(free).unwrap());
     }

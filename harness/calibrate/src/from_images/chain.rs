@@ -167,7 +167,7 @@ impl<'s> Chain<'s> {
         let targets: Vec<usize> = (0..self.points.len()).filter(|&target| seen[target] > 1).collect();
         let mut point = vec![usize::MAX; self.points.len()];
         targets.iter().enumerate().for_each(|(k, &target)| point[target] = k);
-        let own = |camera: &Camera| self.of_start(camera, names);
+        let own = |camera: &Camera| of_start(camera, names);
         let network = Network {
             cameras: self.cameras.iter().map(own).collect(),
             images: images
@@ -187,13 +187,6 @@ impl<'s> Chain<'s> {
             ..Network::default()
         };
         (network, targets)
-    }
-
-    /// With those of the parameters free that the model has.
-    fn of_start(&self, camera: &Camera, names: &[&str]) -> Interior {
-        let own: Vec<&str> = names.iter().copied().filter(|name| camera.parameters().iter().any(|p| p.name == *name)).collect();
-        let fixed = Interior::fixed("the camera", *camera);
-        fixed.clone().free(&own).unwrap_or(fixed)
     }
 
     /// Mean of the squared residuals of the image points of oriented images, in parts of what is as bad as it gets; one that is not pictured is that, and
@@ -242,4 +235,11 @@ fn is_lens(camera: &Camera) -> bool {
         (Some(x), Some(y)) => x > 0.1 * side && x < 30.0 * side && (x / y - 1.0).abs() < 0.3,
         _ => true,
     }
+}
+
+/// With those of the parameters free that the model has.
+fn of_start(camera: &Camera, names: &[&str]) -> Interior {
+    let own: Vec<&str> = names.iter().copied().filter(|name| camera.parameters().iter().any(|p| p.name == *name)).collect();
+    let fixed = Interior::fixed("the camera", *camera);
+    fixed.clone().free(&own).unwrap_or(fixed)
 }

@@ -116,9 +116,10 @@ fn trials(all: &[Optics]) -> Result<Vec<Vec<Camera>>, CalibrationError> {
         }
         let (side, [cx, cy]) = (f64::from(optics.size.width.max(optics.size.height)), middle(optics.size)?);
         let f = focal * side;
-        Ok(match wide {
-            true => OpenCvFisheye { size: optics.size, fx: f, fy: f, cx, cy, skew: 0.0, k: [0.0; 4] }.into(),
-            false => pinhole(optics.size, f, [cx, cy]),
+        Ok(if wide {
+            OpenCvFisheye { size: optics.size, fx: f, fy: f, cx, cy, skew: 0.0, k: [0.0; 4] }.into()
+        } else {
+            pinhole(optics.size, f, [cx, cy])
         })
     };
     let wide = FOCAL_WIDE.iter().filter(|_| is_wide).map(|focal| (*focal, true));

@@ -122,9 +122,8 @@ fn by_times(images: &[String], owners: &[usize], times: &[TimedImage], tolerance
         return Err(refused(format!("no time is known of {}: expected a row for each image", few(&lost))));
     }
     let times: Vec<f64> = images.iter().map(|image| known[image.as_str()]).collect();
-    let tolerance = match tolerance_s.or_else(|| half_a_period(owners, &times)) {
-        Some(tolerance) => tolerance,
-        None => return Err(refused("the times do not say how far apart images of one moment are: give --tolerance S".into())),
+    let Some(tolerance) = tolerance_s.or_else(|| half_a_period(owners, &times)) else {
+        return Err(refused("the times do not say how far apart images of one moment are: give --tolerance S".into()));
     };
     let mut order: Vec<usize> = (0..images.len()).collect();
     order.sort_by(|&a, &b| times[a].total_cmp(&times[b]).then(a.cmp(&b)));

@@ -46,12 +46,22 @@ fn normal(state: &mut u64) -> f64 {
     (0..12).map(|_| uniform()).sum::<f64>() - 6.0
 }
 
-impl Scene {
-    fn control(&self) -> Vec<ControlRow> {
-        let rows: String = (0..63).map(|i| format!("t{i},{},{},0\n", 30 * (i % 9), 30 * (i / 9))).collect();
-        parse_control("control.csv", format!("target,X,Y,Z\n{rows}").as_bytes()).unwrap()
-    }
+fn control() -> Vec<ControlRow> {
+    let rows: String = (0..63).map(|i| format!("t{i},{},{},0\n", 30 * (i % 9), 30 * (i / 9))).collect();
+    parse_control("control.csv", format!("target,X,Y,Z\n{rows}").as_bytes()).unwrap()
+}
 
+fn settings() -> RigSettings {
+    let optics = |name: &&str| {
+        let images = vec![glob::Pattern::new(&format!("{name}*.png")).unwrap()];
+        Optics { name: (*name).to_owned(), images, ..Optics::new(SIZE) }
+    };
+    let cameras: Vec<Optics> = NAMES.iter().map(optics).collect();
+    let pairing = Pairing::Names(cameras.iter().map(|optics| optics.images.clone()).collect());
+    RigSettings { settings: Settings::new(cameras), pairing, origin: 0 }
+}
+
+impl Scene {
     fn points(&self) -> Points {
         let (mut text, mut state) = (String::from("image,target,x,y\n"), self.seed);
         for moment in 0..self.moments {
@@ -74,18 +84,8 @@ impl Scene {
         parse_points("points.csv", text.as_bytes()).unwrap().points
     }
 
-    fn settings(&self) -> RigSettings {
-        let optics = |name: &&str| {
-            let images = vec![glob::Pattern::new(&format!("{name}*.png")).unwrap()];
-            Optics { name: (*name).to_owned(), images, ..Optics::new(SIZE) }
-        };
-        let cameras: Vec<Optics> = NAMES.iter().map(optics).collect();
-        let pairing = Pairing::Names(cameras.iter().map(|optics| optics.images.clone()).collect());
-        RigSettings { settings: Settings::new(cameras), pairing, origin: 0 }
-    }
-
     fn prepared(&self) -> RigPrepared {
-        prepare_rig(&self.points(), &self.control(), &self.settings()).unwrap()
+        prepare_rig(&self.points(), &control(), &settings()).unwrap()
     }
 }
 
@@ -133,10 +133,10 @@ fn the_test_of_one_rig_holds_its_level() {
     for seed in 0..60 {
         let mut scene = Scene { noise: 0.2, seed: 100 + seed, moments: 5, ..Scene::default() };
         scene.sees = |moment, camera| (moment + camera) % 4 != 3;
-        let mut settings = scene.settings();
+        let mut settings = settings();
         settings.settings.cameras.iter_mut().for_each(|optics| (optics.start, optics.solve) = (Some(lens()), Some(Vec::new())));
         settings.settings.gross = GrossErrors::Kept;
-        let prepared = prepare_rig(&scene.points(), &scene.control(), &settings).unwrap();
+        let prepared = prepare_rig(&scene.points(), &control(), &settings).unwrap();
         let p = calibrate_rig(&prepared).unwrap().one_rig.unwrap().p;
         below[0] += usize::from(p < 0.5);
         below[1] += usize::from(p < 0.1);
@@ -147,13 +147,13 @@ fn the_test_of_one_rig_holds_its_level() {
 #[test]
 fn a_camera_without_a_partner_is_named() {
     let scene = Scene { sees: |moment, camera| (camera == 2) == (moment % 2 == 0), ..Scene::default() };
-    let error = prepare_rig(&scene.points(), &scene.control(), &scene.settings()).unwrap_err();
+    let error = prepare_rig(&scene.points(), &control(), &settings()).unwrap_err();
     assert!(error.to_string().contains("no station joins (left, middle) with right"), "{error}");
     let scene = Scene { sees: |moment, camera| moment != 3 || camera == 1, ..Scene::default() };
     assert_eq!(scene.prepared().alone(), ["middle03.png"]);
-    let mut settings = scene.settings();
+    let mut settings = settings();
     settings.settings.gross = GrossErrors::Weighted(2.0);
-    assert!(matches!(prepare_rig(&scene.points(), &scene.control(), &settings), Err(CalibrationError::Rig(_))));
+    assert!(matches!(prepare_rig(&scene.points(), &control(), &settings), Err(CalibrationError::Rig(_))));
 }
 
 /// Reference data, where they are.

@@ -4,7 +4,7 @@ mod photographs;
 mod points;
 mod views;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibench_cameras::inputs_of;
 use calibench_images::picture::PictureKind;
@@ -103,7 +103,7 @@ fn kernel(name: &str) -> Result<Kernel, String> {
 }
 
 /// Whether a file is one of points, by its ending.
-fn is_table(path: &PathBuf) -> bool {
+fn is_table(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
@@ -116,7 +116,7 @@ impl Undistort {
                 let output = output::file_of_points("-o", &self.output, &inputs)?;
                 points::moved(table, &self.views()?, &output, context.quiet)
             }
-            files if files.iter().any(is_table) => {
+            files if files.iter().any(|path| is_table(path)) => {
                 Err(Failure::input("expected photographs, or one file of points: give each CSV a command of its own"))
             }
             _ => {

@@ -86,8 +86,14 @@ impl Opened {
             turn.apply_to_levels(&mut image);
         }
         let image = match image.color() {
-            ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => image,
-            ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => image,
+            ColorType::L8
+            | ColorType::La8
+            | ColorType::Rgb8
+            | ColorType::Rgba8
+            | ColorType::L16
+            | ColorType::La16
+            | ColorType::Rgb16
+            | ColorType::Rgba16 => image,
             other if other.has_alpha() => DynamicImage::ImageRgba16(image.to_rgba16()),
             _ => DynamicImage::ImageRgb16(image.to_rgb16()),
         };
@@ -136,7 +142,7 @@ impl Opened {
                     match into {
                         PictureLevels::Bytes(levels) => levels.extend(&line),
                         PictureLevels::Words(levels) => {
-                            levels.extend(line.as_chunks::<2>().0.iter().map(|level| u16::from_be_bytes(*level)))
+                            levels.extend(line.as_chunks::<2>().0.iter().map(|level| u16::from_be_bytes(*level)));
                         }
                     }
                     if self.given + row + 1 == self.form.size.height as usize {

@@ -51,7 +51,7 @@ impl PictureKind {
     pub fn refuses(self, form: PictureForm) -> Option<&'static str> {
         match self {
             Self::Jpeg if form.is_deep => Some("a JPEG holds 8 bits and the photograph has 16: expected png or tiff"),
-            Self::Jpeg if form.channels % 2 == 0 => Some("a JPEG holds no alpha, which the photograph has: expected png or tiff"),
+            Self::Jpeg if form.channels.is_multiple_of(2) => Some("a JPEG holds no alpha, which the photograph has: expected png or tiff"),
             Self::Jpeg if form.size.width > 65_535 || form.size.height > 65_535 => {
                 Some("a JPEG has at most 65535 px a side: expected png or tiff")
             }
@@ -195,7 +195,7 @@ fn tiff_head(form: PictureForm, about: &About) -> Vec<u8> {
             Entry::long(279, &(0..strips).map(count).collect::<Vec<u32>>()),
             Entry::short(284, &[1]),
         ];
-        if form.channels % 2 == 0 {
+        if form.channels.is_multiple_of(2) {
             // Alpha by which colours are not multiplied.
             more.push(Entry::short(338, &[2]));
         }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// The adjusted length between two targets.
 #[derive(Serialize, JsonSchema)]
+#[expect(clippy::struct_field_names, reason = "they are the keys of the document")]
 pub(super) struct Length {
     /// The targets at its ends.
     targets: [String; 2],

@@ -36,7 +36,8 @@ pub fn resample<T: Level>(
     check(map, kernel, picture, &rows, into.len())?;
     let stride = map.size().width as usize * picture.channels;
     let Some(squares) = T::squares(kernel, picture.channels) else {
-        return planes::resample(map, kernel, picture, rows, into);
+        planes::resample(map, kernel, picture, rows, into);
+        return Ok(());
     };
     let weights = Weights::new(kernel, picture.channels);
     into.par_chunks_mut(Map::BAND * stride).enumerate().for_each(|(band, into)| {
@@ -53,7 +54,7 @@ fn check<T>(map: &Map, kernel: Kernel, picture: &Picture<'_, T>, rows: &Range<us
     if picture.size != source {
         return Err(PictureError::Size { found: format!("{} x {} px", picture.size.width, picture.size.height), expected: expected() });
     }
-    let whole = rows.start % Map::BAND == 0 && (rows.end % Map::BAND == 0 || rows.end == size.height as usize);
+    let whole = rows.start.is_multiple_of(Map::BAND) && (rows.end.is_multiple_of(Map::BAND) || rows.end == size.height as usize);
     if !whole || rows.end > size.height as usize || rows.len() * size.width as usize * picture.channels != levels {
         let channels = picture.channels;
         return Err(PictureError::Rows { found: levels, width: size.width, height: size.height, channels });

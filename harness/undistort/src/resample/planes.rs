@@ -11,7 +11,7 @@ use super::{spline, squares};
 use crate::cell::{Cell, SIDE};
 use crate::kernel::Kernel;
 use crate::map::Map;
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
 
 /// Squares of a map along a side of a block, which is made for itself.
 const BLOCK: usize = 8;
@@ -35,13 +35,7 @@ struct Block<'a> {
 }
 
 /// As [`super::resample`], for any picture.
-pub(super) fn resample<T: Level>(
-    map: &Map,
-    kernel: Kernel,
-    picture: &Picture<'_, T>,
-    rows: Range<usize>,
-    into: &mut [T],
-) -> Result<(), PictureError> {
+pub(super) fn resample<T: Level>(map: &Map, kernel: Kernel, picture: &Picture<'_, T>, rows: Range<usize>, into: &mut [T]) {
     let (width, channels) = (map.size().width as usize, picture.channels);
     let (stride, weights) = (width * channels, Weights::new(kernel, 1));
     for (i, into) in into.chunks_mut(BLOCK * SIDE * stride).enumerate() {
@@ -61,7 +55,6 @@ pub(super) fn resample<T: Level>(
             }
         }
     }
-    Ok(())
 }
 
 impl Block<'_> {

@@ -1,7 +1,7 @@
 //! The coefficients of the spline through all pixels of a plane.
 
 /// The poles of the quintic spline's filter within the unit circle: Unser 1999, "Splines: a perfect fit for signal and image processing", box 2.
-const POLES: [f32; 2] = [-0.430_575_35, -0.043_096_288];
+const POLES: [f32; 2] = [-0.430_575_34, -0.043_096_29];
 /// Pixels after which what lies beyond changes nothing: the first pole to this power is 2e-9.
 pub(super) const MARGIN: usize = 24;
 /// Lines that are filtered side by side.
