@@ -95,7 +95,9 @@ pub fn prepare_reconstruction(
     });
     left_out.sort_by_key(|left_out| left_out.sight);
     let named = |which: Begin| begins.iter().zip(&reconstruction.sights).filter(move |(begin, _)| **begin == which);
-    let names = |(_, sight): (&Begin, &TieSight)| [reconstruction.images[sight.image].name.clone(), reconstruction.points[sight.point].name.clone()];
+    let names = |(_, sight): (&Begin, &TieSight)| {
+        [reconstruction.images[sight.image].name.clone(), reconstruction.points[sight.point].name.clone()]
+    };
     let left_out_images = (0..reconstruction.images.len()).filter(|image| !images.contains(image));
     Ok(Reconstructed {
         left_out_images: left_out_images.map(|image| reconstruction.images[image].name.clone()).collect(),
@@ -150,13 +152,15 @@ impl Calibration<'_> {
     pub fn reconstruction(&self, given: &Reconstruction) -> (Reconstruction, Vec<f64>) {
         let network = &self.prepared.network;
         let mut adjusted = Reconstruction::default();
-        let by_name: HashMap<&str, &ReconstructedCamera> = given.cameras.iter().map(|camera| (camera.named.name.as_str(), camera)).collect();
+        let by_name: HashMap<&str, &ReconstructedCamera> =
+            given.cameras.iter().map(|camera| (camera.named.name.as_str(), camera)).collect();
         for (index, optics) in self.prepared.settings.cameras.iter().enumerate() {
             let before = by_name[optics.name.as_str()];
             let named = NamedCamera { camera: *self.camera(index), ..before.named.clone() };
             adjusted.cameras.push(ReconstructedCamera { named, ..before.clone() });
         }
-        let image = |(exterior, pose): (&Exterior, &Pose)| OrientedImage { name: exterior.name.clone(), camera: exterior.camera, pose: *pose };
+        let image =
+            |(exterior, pose): (&Exterior, &Pose)| OrientedImage { name: exterior.name.clone(), camera: exterior.camera, pose: *pose };
         adjusted.images = network.images.iter().zip(self.solution.poses()).map(image).collect();
         let point = |(point, position): (&ObjectPoint, &Point3<f64>)| TiePoint { name: point.name.clone(), position: *position };
         adjusted.points = network.points.iter().zip(self.solution.points()).map(point).collect();
@@ -176,7 +180,8 @@ impl Calibration<'_> {
 fn names_are_unique(reconstruction: &Reconstruction) -> Result<(), CalibrationError> {
     let twice = |what: &str, names: &mut dyn Iterator<Item = &str>| {
         let mut seen = HashSet::new();
-        let again = names.find(|name| !seen.insert(*name)).map(|name| format!("two {what} are called `{name}`; expected names that differ"));
+        let again =
+            names.find(|name| !seen.insert(*name)).map(|name| format!("two {what} are called `{name}`; expected names that differ"));
         again.map_or(Ok(()), |why| Err(CalibrationError::Reconstruction { why }))
     };
     twice("images", &mut reconstruction.images.iter().map(|image| image.name.as_str()))?;
@@ -214,7 +219,8 @@ fn images_in_use(reconstruction: &Reconstruction, counts: &[bool]) -> HashSet<us
 fn cameras(reconstruction: &Reconstruction, images: &HashSet<usize>, solved: &Solved) -> Result<Vec<Optics>, CalibrationError> {
     let mut of_camera: BTreeMap<usize, Vec<Pattern>> = BTreeMap::new();
     for (index, image) in reconstruction.images.iter().enumerate().filter(|(index, _)| images.contains(index)) {
-        let pattern = Pattern::new(&Pattern::escape(&image.name)).map_err(|_| CalibrationError::Reconstruction { why: reconstruction.images[index].name.clone() })?;
+        let pattern = Pattern::new(&Pattern::escape(&image.name))
+            .map_err(|_| CalibrationError::Reconstruction { why: reconstruction.images[index].name.clone() })?;
         of_camera.entry(image.camera).or_default().push(pattern);
     }
     if of_camera.is_empty() {
@@ -277,8 +283,7 @@ fn survey(reconstruction: &Reconstruction, taken: &[usize]) -> Result<Survey, Ca
         let why = format!("image {} shows point {} twice; expected each point once an image", row.image, row.target);
         return Err(CalibrationError::Reconstruction { why });
     }
-    let rows: Vec<ControlRow> =
-        reconstruction.points.iter().map(|point| ControlRow::new(&point.name, point.position.into())).collect();
+    let rows: Vec<ControlRow> = reconstruction.points.iter().map(|point| ControlRow::new(&point.name, point.position.into())).collect();
     Survey::new(points, &rows)
 }
 
@@ -290,8 +295,10 @@ fn starts(
     taken: &[usize],
     counts: impl Fn(usize) -> bool,
 ) -> (Starts, Vec<usize>) {
-    let by_name: HashMap<&str, usize> = reconstruction.images.iter().enumerate().map(|(index, image)| (image.name.as_str(), index)).collect();
-    let camera_of: HashMap<&str, usize> = settings.cameras.iter().enumerate().map(|(index, optics)| (optics.name.as_str(), index)).collect();
+    let by_name: HashMap<&str, usize> =
+        reconstruction.images.iter().enumerate().map(|(index, image)| (image.name.as_str(), index)).collect();
+    let camera_of: HashMap<&str, usize> =
+        settings.cameras.iter().enumerate().map(|(index, optics)| (optics.name.as_str(), index)).collect();
     let image_of = |name: &String| &reconstruction.images[by_name[name.as_str()]];
     let owners = survey.images.iter().map(|name| camera_of[reconstruction.cameras[image_of(name).camera].named.name.as_str()]).collect();
     let mut rays = vec![0_usize; survey.targets()];

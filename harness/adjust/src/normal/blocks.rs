@@ -135,7 +135,8 @@ impl Rows {
         Scratch(view): &mut Scratch,
     ) -> Result<(), Lost> {
         let camera = network.images[image].camera;
-        let (free, pose, optics) = (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera], layout.all_before));
+        let (free, pose, optics) =
+            (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera], layout.all_before));
         let setting = Setting { optics: &optics, pose, free, loss, observations: &network.observations };
         let mask = layout.pose_mask(image);
         (self.width, self.first) = (free.len() + POSE + 3, range.start);

@@ -9,7 +9,8 @@ use nalgebra::{Point3, Rotation3, Vector3};
 use crate::network::SIZE;
 
 fn lens(f: f64, k1: f64) -> Camera {
-    Agisoft { size: SIZE, version: AgisoftVersion::Metashape, f, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [k1, 0.02, 0.0, 0.0], p: [0.0; 4] }.into()
+    Agisoft { size: SIZE, version: AgisoftVersion::Metashape, f, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [k1, 0.02, 0.0, 0.0], p: [0.0; 4] }
+        .into()
 }
 
 /// Numbers from -1 to 1 that are scattered and the same everywhere.
@@ -77,7 +78,8 @@ fn exact_sights_give_the_cameras_that_took_them() {
     let adjusted = found.prepared.adjust().unwrap();
     assert!(adjusted.solution.cost() < 1e-12, "{}", adjusted.solution.cost());
     for (camera, truth) in adjusted.solution.cameras().iter().zip(&truth) {
-        let differ = camera.parameters().iter().zip(truth.parameters()).any(|(a, b)| (a.value - b.value).abs() > 1e-6 * b.value.abs().max(1.0));
+        let differ =
+            camera.parameters().iter().zip(truth.parameters()).any(|(a, b)| (a.value - b.value).abs() > 1e-6 * b.value.abs().max(1.0));
         assert!(!differ, "{camera:?} {truth:?}");
     }
     let counts = adjusted.solution.counts();

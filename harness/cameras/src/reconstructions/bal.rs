@@ -28,15 +28,13 @@ struct Row {
 
 pub(super) fn read(text: &str, size: Option<ImageSize>) -> Result<Reconstruction, CameraFileError> {
     let mut words = Words::new(text);
-    let (images, points, count) = (
-        words.whole("the number of cameras")?,
-        words.whole("the number of points")?,
-        words.whole("the number of observations")?,
-    );
+    let (images, points, count) =
+        (words.whole("the number of cameras")?, words.whole("the number of points")?, words.whole("the number of observations")?);
     let mut rows = Vec::new();
     for _ in 0..count {
         let what = "an observation: camera, point, x, y";
-        let mut index = |name, most| words.whole(what).and_then(|index| within(name, index, most).map_err(|error| words.wrong(error, what)));
+        let mut index =
+            |name, most| words.whole(what).and_then(|index| within(name, index, most).map_err(|error| words.wrong(error, what)));
         let (image, point) = (index("camera", images)?, index("point", points)?);
         rows.push(Row { image, point, at: words.numbers(what)? });
     }

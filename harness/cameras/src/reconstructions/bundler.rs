@@ -74,7 +74,8 @@ pub(super) fn read(text: &str, size: Option<ImageSize>) -> Result<Reconstruction
     if unused > 0 {
         out.notes.push(format!("{unused} images that are not oriented were left out"));
     }
-    let sight = |(image, point, at): (usize, usize, [f64; 2])| Some(TieSight { image: place[image]?, point, position: from_the_middle(size, at) });
+    let sight =
+        |(image, point, at): (usize, usize, [f64; 2])| Some(TieSight { image: place[image]?, point, position: from_the_middle(size, at) });
     out.sights = rows.into_iter().filter_map(sight).collect();
     Ok(out)
 }

@@ -57,7 +57,8 @@ pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruct
     let mut unknown = 0;
     parsed(folder, PARTS[1], |bytes, is_binary| {
         let mut take = |image: Image, seen: Vec<([f64; 2], u64)>| {
-            let missing = || CameraFileError::new(format!("camera {} is not in the list of cameras", image.camera)).of(shortened(&image.name));
+            let missing =
+                || CameraFileError::new(format!("camera {} is not in the list of cameras", image.camera)).of(shortened(&image.name));
             let camera = *by_id.get(&image.camera.to_string()).ok_or_else(missing)?;
             let pose = image.pose().map_err(|error| error.of(shortened(&image.name)))?;
             let index = out.images.len();
@@ -133,7 +134,9 @@ fn points(bytes: &[u8], is_binary: bool) -> Result<PlacedPoints, CameraFileError
         let mut words = line.split_whitespace();
         let mut word = || words.next().ok_or_else(|| CameraFileError::new("expected POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[]"));
         let id = word().map_err(at)?;
-        let id = id.parse().map_err(|_| at(CameraFileError::new(format!("expected a whole number, found `{}`", shortened(id))).of("POINT3D_ID")))?;
+        let id = id
+            .parse()
+            .map_err(|_| at(CameraFileError::new(format!("expected a whole number, found `{}`", shortened(id))).of("POINT3D_ID")))?;
         let mut number = || word().and_then(finite).map_err(at);
         let position = [number()?, number()?, number()?];
         take(id, position).map_err(at)?;
@@ -192,7 +195,8 @@ fn seen_in_text(line: &str) -> Result<Vec<([f64; 2], u64)>, CameraFileError> {
         if *id == "-1" {
             continue;
         }
-        let id = id.parse().map_err(|_| CameraFileError::new(format!("expected a whole number, found `{}`", shortened(id))).of("POINT3D_ID"))?;
+        let id =
+            id.parse().map_err(|_| CameraFileError::new(format!("expected a whole number, found `{}`", shortened(id))).of("POINT3D_ID"))?;
         seen.push(([finite(x)?, finite(y)?], id));
     }
     Ok(seen)

@@ -7,11 +7,11 @@ use calibench_model::camera::CameraModel;
 use calibench_model::named_camera::Pose;
 use calibench_model::pose;
 
+use crate::CameraFileError;
 use crate::colmap_models::written;
 use crate::formats::colmap::FORMAT;
 use crate::number::shortest;
 use crate::pose::quaternion;
-use crate::CameraFileError;
 
 /// cameras.txt, images.txt and points3D.txt of a reconstruction. Images and cameras are numbered from 1, points as they are named if all names are whole numbers; colours are black.
 /// `error_px` is, of each point, the mean length of its residuals, px.
@@ -32,7 +32,8 @@ pub fn write_colmap(reconstruction: &Reconstruction, error_px: &[f64]) -> Result
         of_point[sight.point].push((sight.image + 1, of_image[sight.image].len()));
         of_image[sight.image].push(sight);
     }
-    let mut taken = String::from("# Image list with two lines of data per image:\n#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n");
+    let mut taken =
+        String::from("# Image list with two lines of data per image:\n#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n");
     taken.push_str("#   POINTS2D[] as (X, Y, POINT3D_ID)\n");
     for (index, image) in images.iter().enumerate() {
         let pose = forward(&image.pose);
@@ -45,7 +46,9 @@ pub fn write_colmap(reconstruction: &Reconstruction, error_px: &[f64]) -> Result
         });
         let _ = writeln!(taken, "{}", seen.collect::<Vec<_>>().join(" "));
     }
-    let mut cloud = String::from("# 3D point list with one line of data per point:\n#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n");
+    let mut cloud = String::from(
+        "# 3D point list with one line of data per point:\n#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n",
+    );
     for (index, point) in points.iter().enumerate() {
         let [x, y, z] = [point.position.x, point.position.y, point.position.z].map(shortest);
         let track = of_point[index].iter().map(|(image, place)| format!(" {image} {place}")).collect::<String>();

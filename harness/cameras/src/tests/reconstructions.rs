@@ -110,7 +110,11 @@ fn openmvg() -> String {
     };
     let views: Vec<String> = (0..3).map(|i| view(i, i as u64)).chain([view(3, 4_294_967_295)]).collect();
     let pose = |(i, pose): (usize, &Pose)| {
-        format!("{{\"key\": {i}, \"value\": {{\"rotation\": {:?}, \"center\": {:?}}}}}", rows(pose, true), <[f64; 3]>::from(pose.centre.coords))
+        format!(
+            "{{\"key\": {i}, \"value\": {{\"rotation\": {:?}, \"center\": {:?}}}}}",
+            rows(pose, true),
+            <[f64; 3]>::from(pose.centre.coords)
+        )
     };
     let seen = |point: &Point3<f64>| {
         let one = |(i, pose): (usize, &Pose)| format!("{{\"key\": {i}, \"value\": {{\"id_feat\": 1, \"x\": {:?}}}}}", corner(pose, point));
@@ -156,7 +160,11 @@ fn is_the_scene(found: &Reconstruction, camera_per_image: bool, origin: [f64; 2]
     assert_eq!((found.images.len(), found.points.len(), found.sights.len()), (3, 12, 36), "{what}");
     assert_eq!(found.cameras.len(), if camera_per_image { 3 } else { 1 }, "{what}");
     for (image, pose) in found.images.iter().zip(&poses) {
-        assert!((image.pose.rotation - pose.rotation).amax() < 1e-9 && (image.pose.centre - pose.centre).amax() < 1e-9, "{what}: {}", image.name);
+        assert!(
+            (image.pose.rotation - pose.rotation).amax() < 1e-9 && (image.pose.centre - pose.centre).amax() < 1e-9,
+            "{what}: {}",
+            image.name
+        );
     }
     assert!(found.points.iter().zip(&points).all(|(found, point)| (found.position - point).amax() < 1e-12), "{what}");
     for sight in &found.sights {
@@ -192,7 +200,10 @@ fn four_tools_say_the_same() {
         let found = read_reconstruction(&path, None).unwrap();
         is_the_scene(&found.reconstruction, false, [0.5; 2], "COLMAP");
         assert_eq!((found.tool, found.reconstruction.images[1].name.as_str()), ("COLMAP", "a photo 1.jpg"));
-        assert_eq!((found.reconstruction.cameras[0].lens.as_slice(), found.reconstruction.points[3].name.as_str()), (&["f", "k1", "k2"][..], "103"));
+        assert_eq!(
+            (found.reconstruction.cameras[0].lens.as_slice(), found.reconstruction.points[3].name.as_str()),
+            (&["f", "k1", "k2"][..], "103")
+        );
     }
 }
 
@@ -202,7 +213,10 @@ fn without_a_size_the_frame_holds_all_points() {
         let found = read(name, &text, None).unwrap();
         let size = found.cameras[0].named.camera.size();
         let inside = |v: f64, side: u32| (0.0..f64::from(side) - 1.0).contains(&v);
-        assert!(found.sights.iter().all(|sight| inside(sight.position.x, size.width) && inside(sight.position.y, size.height)), "{name}: {size:?}");
+        assert!(
+            found.sights.iter().all(|sight| inside(sight.position.x, size.width) && inside(sight.position.y, size.height)),
+            "{name}: {size:?}"
+        );
         assert!(found.cameras.iter().all(|camera| camera.principal_point.is_empty()), "{name}");
     }
 }
@@ -225,7 +239,11 @@ fn what_is_written_is_read_again() {
 fn mistakes_are_named_with_their_place() {
     let cut = |text: &str, lines: usize| text.lines().take(lines).collect::<Vec<_>>().join("\n");
     let wrong = [
-        ("problem.txt", bal().replacen("\n2 0 ", "\n3 0 ", 1), "problem.txt:4, `an observation: camera, point, x, y`: camera 3 is not there; expected 0 to 2"),
+        (
+            "problem.txt",
+            bal().replacen("\n2 0 ", "\n3 0 ", 1),
+            "problem.txt:4, `an observation: camera, point, x, y`: camera 3 is not there; expected 0 to 2",
+        ),
         ("problem.txt", cut(&bal(), 40), "ends before the nine numbers of camera 0"),
         ("problem.txt", bal() + "1\n", "expected the end of the file, found `1`"),
         ("problem.txt", bal().replacen("7e2", "-7e2", 1), "expected a number above zero, found -700"),

@@ -73,5 +73,7 @@ impl Calibrate {
 fn write(folder: &OutputFolder, calibration: &Calibration<'_>, given: &Reconstruction) -> Result<(), Failure> {
     let (reconstruction, errors_px) = calibration.reconstruction(given);
     let files = write_colmap(&reconstruction, &errors_px)?;
-    Ok(folder.replace(|folder: &NewFolder| files.iter().try_for_each(|(name, text)| folder.write(name, |file| file.write_all(text.as_bytes()))))?)
+    Ok(folder.replace(|folder: &NewFolder| {
+        files.iter().try_for_each(|(name, text)| folder.write(name, |file| file.write_all(text.as_bytes())))
+    })?)
 }
