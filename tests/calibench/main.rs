@@ -50,6 +50,7 @@ mod plugins;
 mod point;
 mod priors;
 mod project;
+mod reconstructions;
 mod records;
 mod render;
 mod resect;

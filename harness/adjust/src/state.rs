@@ -1,7 +1,7 @@
 //! Values of all unknowns, and how a step changes them.
 
 use calibench_model::camera::opencv::CameraFromWorld;
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
@@ -36,7 +36,7 @@ impl State {
 
     /// Where an observation of a checked network is pictured, if it is.
     pub(crate) fn pixel(&self, network: &Network, o: &ImageObservation) -> Option<PixelPoint> {
-        let ray = self.poses[o.image].ray(&self.points[o.point]);
+        let ray = before(self.poses[o.image].ray(&self.points[o.point]), o.behind);
         self.cameras[network.images[o.image].camera].project(ray).ok()
     }
 
@@ -88,6 +88,11 @@ pub(crate) fn turned(pose: &Pose, step: &[f64; 6]) -> Pose {
     let mut rotation = Rotation3::new(Vector3::new(a, b, c)) * Rotation3::from_matrix_unchecked(pose.rotation);
     rotation.renormalize();
     Pose { rotation: *rotation.matrix(), centre: pose.centre - pose.rotation.tr_mul(&Vector3::new(x, y, z)) }
+}
+
+/// The ray to a point, or the one that goes on from it through the projection centre.
+pub(crate) fn before(ray: Ray, is_behind: bool) -> Ray {
+    if is_behind { Ray { x: -ray.x, y: -ray.y, z: -ray.z } } else { ray }
 }
 
 /// `N = M X - M X0`.

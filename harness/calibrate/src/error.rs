@@ -88,6 +88,12 @@ pub enum CalibrationError {
         /// The measured target whose name is nearest.
         near: Option<String>,
     },
+    /// A reconstruction that is none.
+    #[error("the reconstruction: {why}")]
+    Reconstruction {
+        /// What is wrong with it.
+        why: String,
+    },
     /// No object coordinates from image points alone.
     #[error("no object coordinates from image points alone: {why}")]
     NoModel {

@@ -42,6 +42,8 @@ pub struct Prepared {
     pub left_out: Vec<LeftOut>,
     /// Targets that a method was given and that have no position; [`prepare`] leaves it empty. They have a row in the residuals' table.
     pub unmeasured: LostRows,
+    /// Start values were given for everything, and are not to be looked for.
+    pub(crate) is_given: bool,
 }
 
 /// Joins points with control and finds start values for everything.
@@ -80,6 +82,7 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         sights,
         left_out,
         unmeasured: LostRows::default(),
+        is_given: false,
     })
 }
 
@@ -87,6 +90,9 @@ impl Prepared {
     /// The same observations, of which those in gross error are to be left out, and start values against them; `None` where there are none.
     pub(crate) fn without_gross_errors(&self) -> Option<Self> {
         let settings = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..self.settings.clone() };
+        if self.is_given {
+            return Some(Self { settings, ..self.clone() });
+        }
         let found = prepared(&self.survey, &settings).ok()?;
         Some(Self { unmeasured: self.unmeasured.clone(), ..found })
     }

@@ -18,7 +18,7 @@ pub(super) struct Image {
     t: [f64; 3],
     /// The id of its camera.
     pub camera: u32,
-    name: String,
+    pub name: String,
 }
 
 impl Image {
@@ -33,7 +33,11 @@ impl Image {
         Ok(NamedCamera { name: self.name, pose, pose_frame: PoseFrame::World, ..camera.clone() })
     }
 
-    fn pose(&self) -> Result<Pose, CameraFileError> {
+    /// Where it was taken.
+    ///
+    /// # Errors
+    /// A rotation of no length.
+    pub fn pose(&self) -> Result<Pose, CameraFileError> {
         let [w, x, y, z] = self.q;
         of_rt(of_quaternion([x, y, z, w])?, self.t)
     }
@@ -66,11 +70,16 @@ pub(super) fn are_in_text(text: &str) -> bool {
 
 /// The lines of images: each is followed by one of points, which may be empty.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    lines_with_points(text).map(|(line, image, _)| (line, image))
+}
+
+/// The same with the lines of their points.
+pub(super) fn lines_with_points(text: &str) -> impl Iterator<Item = (usize, &str, &str)> {
     let mut all = text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate();
     std::iter::from_fn(move || {
         let (index, line) = all.find(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'))?;
-        all.next();
-        Some((index + 1, line.trim()))
+        let points = all.next().map_or("", |(_, line)| line);
+        Some((index + 1, line.trim(), points.trim()))
     })
 }
 
@@ -102,8 +111,16 @@ pub(super) fn in_text(line: &str) -> Result<Image, CameraFileError> {
     Ok(Image { q: [qw, qx, qy, qz], t, camera, name: rest.to_owned() })
 }
 
-/// The image that begins here.
+/// The image that begins here; its points are passed over.
 pub(super) fn in_bytes<R: Stream>(rest: &mut Bytes<R>) -> Result<Image, CameraFileError> {
+    let (image, points) = head_in_bytes(rest)?;
+    // x, y and the id of the object point.
+    rest.pass(points.saturating_mul(24))?;
+    Ok(image)
+}
+
+/// The image that begins here, and how many points follow.
+pub(super) fn head_in_bytes<R: Stream>(rest: &mut Bytes<R>) -> Result<(Image, u64), CameraFileError> {
     rest.u32()?;
     let mut numbers = [0.0; 7];
     for number in &mut numbers {
@@ -111,10 +128,7 @@ pub(super) fn in_bytes<R: Stream>(rest: &mut Bytes<R>) -> Result<Image, CameraFi
     }
     let [qw, qx, qy, qz, t @ ..] = numbers;
     let (camera, name) = (rest.u32()?, rest.text()?);
-    // x, y and the id of the object point.
-    let points = rest.u64()?;
-    rest.pass(points.saturating_mul(24))?;
-    Ok(Image { q: [qw, qx, qy, qz], t, camera, name })
+    Ok((Image { q: [qw, qx, qy, qz], t, camera, name }, rest.u64()?))
 }
 
 fn images(bytes: &[u8]) -> Result<Vec<Image>, CameraFileError> {

@@ -32,6 +32,7 @@ mod pose;
 mod published;
 mod reality_scan;
 mod recognised;
+pub mod reconstructions;
 pub mod rig_files;
 mod source;
 mod splined;

@@ -48,19 +48,29 @@ impl<'a> Source<'a> {
 
 /// All bytes of a file that is no larger than [`LARGEST_FILE`].
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, CameraFileError> {
+    bytes_of(path, LARGEST_FILE)?.ok_or_else(|| too_large(None))
+}
+
+/// All bytes of a file that is no larger than `most` bytes.
+pub(super) fn read_up_to(path: &Path, most: u64) -> Result<Vec<u8>, CameraFileError> {
+    bytes_of(path, most)?.ok_or_else(|| CameraFileError::new(format!("is larger than {} MB, the largest that is read", most >> 20)))
+}
+
+/// All bytes of a file, `None` if they are more than `most`.
+fn bytes_of(path: &Path, most: u64) -> Result<Option<Vec<u8>>, CameraFileError> {
     let unreadable = |error: std::io::Error| CameraFileError::new(error.to_string());
     if path.is_dir() {
         return Err(CameraFileError::new("is a folder; expected a camera file"));
     }
     let file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
-    if length > LARGEST_FILE {
-        return Err(too_large(None));
+    if length > most {
+        return Ok(None);
     }
     // What is no ordinary file has no length: it is read up to the limit.
     let mut bytes = Vec::with_capacity(length as usize);
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > LARGEST_FILE { Err(too_large(None)) } else { Ok(bytes) }
+    file.take(most + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok((bytes.len() as u64 <= most).then_some(bytes))
 }
 
 /// The error of a file that is larger than [`LARGEST_FILE`], with why it is not read in pieces where that was tried.

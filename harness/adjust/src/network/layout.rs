@@ -79,6 +79,8 @@ pub(crate) struct Layout {
     /// Unknown points that a distance joins to another one, sorted.
     pub(crate) joined: Vec<usize>,
     has_unknown_points: bool,
+    /// No observation's point lies behind its camera.
+    pub(crate) all_before: bool,
     /// Whether what couples points with cameras and poses is kept for all sights, and not made anew for some points at a time.
     pub(crate) keeps_couplings: bool,
     pub(crate) pairs: Vec<Pair>,
@@ -122,6 +124,7 @@ impl Layout {
             width,
             pose_free,
             has_unknown_points: triple_free[..network.points.len()].iter().any(|free| *free != [false; 3]),
+            all_before: network.observations.iter().all(|o| !o.behind),
             triples,
             triple_free,
             distances,

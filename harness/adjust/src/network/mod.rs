@@ -87,6 +87,8 @@ pub struct ImageObservation {
     pub position: PixelPoint,
     /// Its precision.
     pub precision: Precision,
+    /// The point lies behind the camera, as no point does that was seen: it is pictured by the line through the projection centre, as far as the camera's formula goes.
+    pub behind: bool,
 }
 
 /// Of image coordinates, a priori.
@@ -217,6 +219,6 @@ impl ObjectPoint {
 impl ImageObservation {
     /// Coordinates of a standard deviation `sigma`, px.
     pub const fn new(image: usize, point: usize, position: PixelPoint, sigma: f64) -> Self {
-        Self { image, point, position, precision: Precision::Sigma(sigma) }
+        Self { image, point, position, precision: Precision::Sigma(sigma), behind: false }
     }
 }

@@ -65,7 +65,7 @@ pub(crate) fn linearise(
     into: &mut Normals,
 ) -> Result<(), Lost> {
     into.reset(layout, state);
-    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
+    let optics = optics(layout, state);
     let view = &mut scratch.0;
     for (image, range) in layout.of_image.iter().enumerate() {
         let camera = network.images[image].camera;
@@ -87,17 +87,22 @@ pub(crate) fn linearise(
     Ok(())
 }
 
+fn optics(layout: &Layout, state: &State) -> Vec<Optics> {
+    state.cameras.iter().map(|camera| Optics::of(camera, layout.all_before)).collect()
+}
+
 /// Residuals alone, at a `state` so near that all else is the same to its last digits.
 ///
 /// # Errors
 /// [`Lost`], if a measured point is not pictured.
 pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scratch: &mut Scratch, into: &mut Normals) -> Result<(), Lost> {
-    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
+    let optics = optics(layout, state);
     for (image, range) in layout.of_image.iter().enumerate() {
         let optics = &optics[network.images[image].camera];
+        let setting = Setting { optics, pose: &state.poses[image], free: &[], loss: Loss::Squares, observations: &network.observations };
         for chunk in chunks(range) {
             let sights = &layout.sights[chunk.clone()];
-            let found = scratch.0.picture(optics, &state.poses[image], sights, &state.points);
+            let found = scratch.0.picture(setting, sights, &state.points);
             found.map_err(|Lost(i)| Lost(chunk.start + i))?;
             scratch.0.subtract(sights, &network.observations, &mut into.residuals[chunk]);
         }
@@ -130,7 +135,8 @@ impl Rows {
         Scratch(view): &mut Scratch,
     ) -> Result<(), Lost> {
         let camera = network.images[image].camera;
-        let (free, pose, optics) = (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera]));
+        let (free, pose, optics) =
+            (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera], layout.all_before));
         let setting = Setting { optics: &optics, pose, free, loss, observations: &network.observations };
         let mask = layout.pose_mask(image);
         (self.width, self.first) = (free.len() + POSE + 3, range.start);

@@ -17,6 +17,7 @@ pub(crate) struct Lost(pub(crate) usize);
 #[derive(Default)]
 pub(super) struct View {
     points: Vec<[f64; 3]>,
+    behind: Vec<bool>,
     pictured: Pictured,
     rows: Vec<f64>,
     /// Columns of the camera's derivatives that are wanted.
@@ -55,7 +56,7 @@ impl View {
         points: &[nalgebra::Point3<f64>],
         residuals: &mut [Residual],
     ) -> Result<(), Lost> {
-        self.picture(setting.optics, setting.pose, sights, points)?;
+        self.picture(setting, sights, points)?;
         self.places.clear();
         self.places.extend((0..POSE).chain(setting.free.iter().map(|i| POSE + i)));
         self.columns = (POSE + setting.free.len() + 1).next_multiple_of(2);
@@ -72,10 +73,14 @@ impl View {
     }
 
     /// Pixels and derivatives.
-    pub(super) fn picture(&mut self, optics: &Optics, pose: &Pose, sights: &[Sight], points: &[nalgebra::Point3<f64>]) -> Result<(), Lost> {
+    pub(super) fn picture(&mut self, setting: Setting, sights: &[Sight], points: &[nalgebra::Point3<f64>]) -> Result<(), Lost> {
         self.points.clear();
         self.points.extend(sights.iter().map(|sight| <[f64; 3]>::from(points[sight.point()].coords)));
-        optics.picture(pose, &self.points, &mut self.pictured);
+        self.behind.clear();
+        if matches!(setting.optics, Optics::Single(_)) {
+            self.behind.extend(sights.iter().map(|sight| sight.observed(setting.observations).behind));
+        }
+        setting.optics.picture(setting.pose, &self.points, &self.behind, &mut self.pictured);
         self.pictured.pixels.iter().position(|pixel| !pixel.is_finite()).map_or(Ok(()), |i| Err(Lost(i)))
     }
 

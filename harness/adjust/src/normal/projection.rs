@@ -5,7 +5,7 @@ use calibench_model::camera::{Camera, CameraModel, DerivativeBuffer, Ray};
 use calibench_model::{PixelPoint, Pose};
 
 use super::gram::{BLOCK, LANES};
-use crate::state::camera_from_world;
+use crate::state::{before, camera_from_world};
 
 /// Columns of a pose: a small rotation about the camera's axes, a shift along them.
 pub(crate) const POSE: usize = 6;
@@ -30,15 +30,16 @@ pub(super) struct Pictured {
 }
 
 impl Optics {
-    pub(super) fn of(camera: &Camera) -> Self {
+    /// Of points behind the camera there are none among those that are pictured if `all_before`.
+    pub(super) fn of(camera: &Camera, all_before: bool) -> Self {
         match camera {
-            Camera::OpenCv(camera) => Self::Batch(Box::new(camera.prepared())),
+            Camera::OpenCv(camera) if all_before => Self::Batch(Box::new(camera.prepared())),
             _ => Self::Single(*camera),
         }
     }
 
-    /// Pictures `points`; a point without an image has pixels that are not numbers.
-    pub(super) fn picture(&self, pose: &Pose, points: &[[f64; 3]], into: &mut Pictured) {
+    /// Pictures `points`, those of which `behind` says so by the line through the projection centre; a point without an image has pixels that are not numbers.
+    pub(super) fn picture(&self, pose: &Pose, points: &[[f64; 3]], behind: &[bool], into: &mut Pictured) {
         into.pixels.resize(points.len(), PixelPoint::default());
         let frame = camera_from_world(pose);
         match self {
@@ -46,7 +47,7 @@ impl Optics {
                 camera.project_all_with_derivatives(&frame, points, &mut into.pixels, &mut into.jacobian);
                 (into.is_batch, into.columns) = (true, into.jacobian.columns());
             }
-            Self::Single(camera) => one_by_one(camera, &frame, points, into),
+            Self::Single(camera) => one_by_one(camera, &frame, (points, behind), into),
         }
     }
 }
@@ -60,7 +61,7 @@ impl Pictured {
     }
 }
 
-fn one_by_one(camera: &Camera, frame: &CameraFromWorld, points: &[[f64; 3]], into: &mut Pictured) {
+fn one_by_one(camera: &Camera, frame: &CameraFromWorld, (points, behind): (&[[f64; 3]], &[bool]), into: &mut Pictured) {
     into.is_batch = false;
     for (i, point) in points.iter().enumerate() {
         let n: [f64; 3] = std::array::from_fn(|k| {
@@ -68,7 +69,8 @@ fn one_by_one(camera: &Camera, frame: &CameraFromWorld, points: &[[f64; 3]], int
             a * point[0] + b * point[1] + c * point[2] + frame.translation[k]
         });
         let buffer = &mut into.buffer;
-        if camera.derivatives_into(Ray { x: n[0], y: n[1], z: n[2] }, buffer).is_err() {
+        let is_behind = behind.get(i).is_some_and(|behind| *behind);
+        if camera.derivatives_into(before(Ray { x: n[0], y: n[1], z: n[2] }, is_behind), buffer).is_err() {
             into.pixels[i] = PixelPoint::new(f64::NAN, f64::NAN);
             continue;
         }
@@ -86,7 +88,8 @@ fn one_by_one(camera: &Camera, frame: &CameraFromWorld, points: &[[f64; 3]], int
             block[column * BLOCK + i % LANES] = x;
             block[column * BLOCK + LANES + i % LANES] = y;
         };
-        let by = |axis: usize| [buffer.by_ray[0][axis], buffer.by_ray[1][axis]];
+        let sign = if is_behind { -1.0 } else { 1.0 };
+        let by = |axis: usize| [sign * buffer.by_ray[0][axis], sign * buffer.by_ray[1][axis]];
         let (dx, dy, dz) = (by(0), by(1), by(2));
         // d N = d x N + s: the rotation's columns are N x gradient.
         let cross = |a: f64, p: [f64; 2], b: f64, q: [f64; 2]| [a * p[0] - b * q[0], a * p[1] - b * q[1]];

@@ -51,7 +51,13 @@ fn network(camera: Camera) -> Network {
     points[2] = ObjectPoint::observed("2", at(2), [0.1, 0.2, 0.3]);
     points[2].position.x += 0.05;
     let precision = Precision::Covariance(Covariance { sxx: 0.5, sxy: 0.2, syy: 0.8 });
-    let measured = |point: usize| ImageObservation { image: 0, point, position: PixelPoint::new(640.0 + point as f64, 480.0), precision };
+    let measured = |point: usize| ImageObservation {
+        image: 0,
+        point,
+        position: PixelPoint::new(640.0 + point as f64, 480.0),
+        precision,
+        behind: false,
+    };
     Network { cameras: vec![interior], images: vec![image], observations: (0..11).map(measured).collect(), points, ..Network::default() }
 }
 

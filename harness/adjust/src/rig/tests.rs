@@ -76,7 +76,7 @@ fn rig() -> Rig {
                 use calibench_model::camera::CameraModel;
                 let seen = rig.network.cameras[camera].camera.project(pose.ray(&rig.network.points[point].position)).unwrap();
                 let position = PixelPoint::new(seen.x + (point as f64).sin(), seen.y + (point as f64 * 1.7).cos());
-                rig.network.observations.push(ImageObservation { image, point, position, precision });
+                rig.network.observations.push(ImageObservation { image, point, position, precision, behind: false });
             }
         }
     }

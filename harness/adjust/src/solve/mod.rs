@@ -19,7 +19,7 @@ use crate::AdjustError;
 use crate::descent::{Damping, Descended, descend};
 use crate::network::{ImageObservation, Layout, Network, Sight};
 use crate::normal::{Loss, Lost, Normals, Scratch, linearise};
-use crate::state::{State, Step};
+use crate::state::{State, Step, before};
 pub(crate) use elimination_order::{Eliminated, Kept, Ordered, Plan};
 use factor::Factor;
 pub(crate) use inverse::{Inverse, Member};
@@ -174,7 +174,8 @@ impl<'n> Engine<'n> {
     fn not_pictured(&self, state: &State, Lost(sight): Lost) -> AdjustError {
         use calibench_model::camera::{CameraModel, NoCounterpart};
         let sight = &self.layout.sights[sight];
-        let ray = state.poses[sight.image()].ray(&state.points[sight.point()]);
+        let is_behind = sight.observed(&self.network.observations).behind;
+        let ray = before(state.poses[sight.image()].ray(&state.points[sight.point()]), is_behind);
         let why = state.cameras[self.layout.camera_of[sight.image()]].project(ray).err().unwrap_or(NoCounterpart::NoSolution);
         let (image, point) = (self.network.images[sight.image()].name.clone(), self.network.points[sight.point()].name.clone());
         AdjustError::NotPictured { image, point, why }

@@ -197,7 +197,13 @@ impl RigPrepared {
                 });
                 let own = seen.covariance.filter(|_| self.asked.settings.covariances);
                 let precision = own.map_or(Precision::Sigma(sigma), Precision::Covariance);
-                self.rig.network.observations.push(ImageObservation { image: place, point, position: seen.position, precision });
+                self.rig.network.observations.push(ImageObservation {
+                    image: place,
+                    point,
+                    position: seen.position,
+                    precision,
+                    behind: false,
+                });
                 self.sights.push(sight as u32);
             }
         }

@@ -11,6 +11,7 @@ mod orientations;
 mod pairs;
 mod planted;
 mod points;
+mod reconstructed;
 mod resampled;
 mod rigs;
 mod shapes;

@@ -18,7 +18,7 @@ mod nerfstudio;
 mod opencv_json;
 mod opencv_xml;
 mod opencv_yaml;
-mod openmvg;
+pub(super) mod openmvg;
 mod opensfm;
 mod photogrammetric;
 mod photoscan_cameras;

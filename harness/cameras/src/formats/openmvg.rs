@@ -50,6 +50,15 @@ const KNOWN: [&str; 7] = ["sfm_data_version", "root_path", "views", "intrinsics"
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let root = json::json(source.text)?;
+    let cameras = intrinsics(&root, options)?.into_iter().map(|(_, named)| named).collect();
+    let posed = root.key("extrinsics")?.map_or(Ok(0), |entry| entry.items().map(<[Entry]>::len))?;
+    let mut notes = root.of_file(&KNOWN, options)?;
+    notes.extend((posed > 0).then(|| format!("`extrinsics`, {posed} poses of images, were left out")));
+    Ok(noted(cameras, &notes))
+}
+
+/// The name of its model and the camera of each of `intrinsics`, whose key is its name.
+pub(crate) fn intrinsics(root: &Entry, options: &ReadOptions) -> Result<Vec<(String, NamedCamera)>, CameraFileError> {
     let mut names = HashMap::new();
     // Views may have taken numbers before.
     for view in root.key("views")?.map_or(Ok(&[][..]), Entry::items)? {
@@ -65,12 +74,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         let data = value.required("ptr_wrapper")?.required("data").map_err(at)?;
         let mut named = camera(&model, data, options).map_err(at)?;
         key.clone_into(&mut named.name);
-        cameras.push(named);
+        cameras.push((model, named));
     }
-    let posed = root.key("extrinsics")?.map_or(Ok(0), |entry| entry.items().map(<[Entry]>::len))?;
-    let mut notes = root.of_file(&KNOWN, options)?;
-    notes.extend((posed > 0).then(|| format!("`extrinsics`, {posed} poses of images, were left out")));
-    Ok(noted(cameras, &notes))
+    Ok(cameras)
 }
 
 /// The name of a value's type, by its number if it was named before.

@@ -9,6 +9,7 @@ mod other_names;
 mod own_format;
 mod reality_scan;
 mod recognised;
+mod reconstructions;
 mod round_trip;
 mod same_camera;
 mod splines;

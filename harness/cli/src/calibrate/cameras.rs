@@ -21,7 +21,7 @@ pub struct Cameras {
     claims: Vec<Claim>,
     /// Size of the images, px. Here and in what follows, CAMERA= before a value says which of several cameras it is for; may be repeated
     #[arg(long, value_name = "[CAMERA=]WxH", value_parser = |text: &str| For::parse(text, reading::size),
-          required_unless_present = "photos", conflicts_with = "photos")]
+          required_unless_present_any = ["photos", "reconstruction"], conflicts_with = "photos")]
     size: Vec<For<ImageSize>>,
     /// Pixel pitch, um, for models in mm
     #[arg(long, value_name = "[CAMERA=]UM", value_parser = |text: &str| For::parse(text, positive), allow_hyphen_values = true)]
@@ -105,6 +105,16 @@ impl Cameras {
     /// The camera files to start from.
     pub fn starts(&self) -> impl Iterator<Item = PathBuf> {
         self.start.iter().map(|start| PathBuf::from(&start.value))
+    }
+
+    /// The size of the images of all cameras together.
+    pub fn common_size(&self) -> Option<ImageSize> {
+        self.size.iter().find(|size| size.camera.is_none()).map(|size| size.value)
+    }
+
+    /// The parameters that all cameras together are solved for.
+    pub fn common_solve(&self) -> Option<Vec<String>> {
+        self.solve.iter().find(|solve| solve.camera.is_none()).map(|solve| solve.value.clone())
     }
 
     /// Whether several cameras are told apart.

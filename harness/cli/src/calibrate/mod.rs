@@ -8,7 +8,7 @@ use calibench_calibrate::{
 };
 use calibench_cameras::inputs_of;
 use calibench_exchange::{PointFile, read_control, read_distances, read_observed_stations};
-use calibench_files::{OutputFile, OutputFolder};
+use calibench_files::{Inputs, OutputFile, OutputFolder};
 use calibench_images::Reading;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
@@ -30,6 +30,7 @@ use crate::failure::Failure;
 mod camera_file;
 mod cameras;
 mod photographs;
+mod reconstruction;
 mod rig;
 
 use cameras::Cameras;
@@ -58,7 +59,7 @@ pub struct Calibrate {
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "photos")]
     only_size: Option<ImageSize>,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
-    #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
+    #[arg(long, value_name = "CSV", required_unless_present_any = ["photos", "reconstruction"], conflicts_with = "photos")]
     points: Option<PathBuf>,
     /// What (0, 0) is in the file of --points [default: centre]
     #[arg(long, value_enum, value_name = "ORIGIN", requires = "points")]
@@ -79,6 +80,8 @@ pub struct Calibrate {
     cameras: Cameras,
     #[command(flatten)]
     rig: rig::RigArguments,
+    #[command(flatten)]
+    reconstruction: reconstruction::ReconstructionArguments,
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, free:A,B,C,... (these targets stay closest to their start values), or minimal:A,B,C,D,E (X and Y of two, Z of three) [default: control; without --control free]
     #[arg(long, value_name = "DATUM")]
     datum: Option<DatumChoice>,
@@ -156,12 +159,12 @@ impl Calibrate {
         if self.rig.is_asked() {
             return self.run_rig(context);
         }
+        if let Some(path) = &self.reconstruction.path {
+            return self.run_reconstruction(path, context);
+        }
         let given = [&self.points, &self.control, &self.approx, &self.distances, &self.poses].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
-        let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("calibrate", None))).transpose()?;
-        let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
-        let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, &inputs)).transpose()?;
-        let outputs = Outputs { camera, scene, report };
+        let outputs = self.outputs(&inputs)?;
         let Input { points, lost, photos, reading, control, is_free, doubts } = self.input(context)?;
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
         let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
@@ -189,6 +192,13 @@ impl Calibrate {
             if in_doubt { Err(Failure::Doubt) } else { Ok(()) }
         })
         .map_err(explained)?
+    }
+
+    fn outputs(&self, inputs: &Inputs) -> Result<Outputs, Failure> {
+        let report = self.report.as_deref().map(|path| output::folder("--report", path, inputs, ("calibrate", None))).transpose()?;
+        let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), inputs)).transpose()?;
+        let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, inputs)).transpose()?;
+        Ok(Outputs { camera, scene, report })
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
@@ -252,7 +262,7 @@ impl Calibrate {
 
     /// Without control there is no frame but that of the targets themselves.
     fn datum(&self) -> DatumChoice {
-        let is_free = self.points.is_some() && self.control.is_none();
+        let is_free = self.reconstruction.path.is_some() || (self.points.is_some() && self.control.is_none());
         self.datum.clone().unwrap_or(if is_free { DatumChoice::Free } else { DatumChoice::Control })
     }
 
