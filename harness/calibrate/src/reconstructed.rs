@@ -107,7 +107,7 @@ pub fn prepare_reconstruction(
             plain: starts.cameras.clone(),
             origins: starts.origins,
             rivals: Vec::new(),
-            shape: Shape::Flat,
+            shape: Shape::Untouched,
             held: Vec::new(),
             eccentricity: None,
             lengths: network::lengths(&survey, &settings, &network)?,
@@ -178,15 +178,15 @@ impl Calibration<'_> {
 
 /// Everything is found again by its name.
 fn names_are_unique(reconstruction: &Reconstruction) -> Result<(), CalibrationError> {
-    let twice = |what: &str, names: &mut dyn Iterator<Item = &str>| {
-        let mut seen = HashSet::new();
-        let again =
-            names.find(|name| !seen.insert(*name)).map(|name| format!("two {what} are called `{name}`; expected names that differ"));
-        again.map_or(Ok(()), |why| Err(CalibrationError::Reconstruction { why }))
-    };
-    twice("images", &mut reconstruction.images.iter().map(|image| image.name.as_str()))?;
-    twice("cameras", &mut reconstruction.cameras.iter().map(|camera| camera.named.name.as_str()))?;
-    twice("points", &mut reconstruction.points.iter().map(|point| point.name.as_str()))
+    differ("images", reconstruction.images.iter().map(|image| image.name.as_str()))?;
+    differ("cameras", reconstruction.cameras.iter().map(|camera| camera.named.name.as_str()))?;
+    differ("points", reconstruction.points.iter().map(|point| point.name.as_str()))
+}
+
+fn differ<'a>(what: &str, mut names: impl Iterator<Item = &'a str>) -> Result<(), CalibrationError> {
+    let mut seen = HashSet::new();
+    let again = names.find(|name| !seen.insert(*name)).map(|name| format!("two {what} are called `{name}`; expected names that differ"));
+    again.map_or(Ok(()), |why| Err(CalibrationError::Reconstruction { why }))
 }
 
 fn begin(reconstruction: &Reconstruction, sight: &TieSight) -> Begin {

@@ -28,11 +28,16 @@ pub struct MethodTable {
     pub figures: BTreeMap<FigureKey, BTreeMap<u64, Numbers>>,
 }
 
-/// The libraries on which the numbers of the method `label` depend, with their versions: OpenCV on that of its methods, and the detector, with its name and
-/// version, that gave the approximate positions.
+/// The libraries on which the numbers of the method `label` depend, with their versions: OpenCV on that of its methods, its solver with the linear algebra under it,
+/// and the detector, with its name and version, that gave the approximate positions.
 pub fn library(label: &str, version: &str, detector: Option<&(String, String)>) -> String {
     let own = label.starts_with("opencv").then(|| format!("OpenCV {version}"));
-    own.into_iter().chain(detector.map(|(name, version)| format!("{name} {version}"))).collect::<Vec<_>>().join(", ")
+    own.into_iter().chain(solver(version)).chain(detector.map(|(name, version)| format!("{name} {version}"))).collect::<Vec<_>>().join(", ")
+}
+
+/// OpenCV's solver with the linear algebra under it, where a version names it among others.
+fn solver(version: &str) -> Option<String> {
+    version.split(", ").find(|part| part.starts_with("calibrateCamera ")).map(str::to_owned)
 }
 
 /// Whether the numbers depend on another library, or version of it, than `blessed`; where one of them is not known they do not.
@@ -166,7 +171,8 @@ impl MethodTable {
     /// A method without a point.
     pub fn new(version: Arc<str>) -> Self {
         let (points, images, figures) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { version, settings: String::new(), library: String::new(), unavailable: None, points, images, figures }
+        let library = solver(&version).unwrap_or_default();
+        Self { version, settings: String::new(), library, unavailable: None, points, images, figures }
     }
 
     /// How many points are measured, lost and rejected.

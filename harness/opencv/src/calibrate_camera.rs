@@ -21,7 +21,7 @@ impl BoardSolver for CalibrateCamera {
     }
 
     fn version(&self) -> String {
-        crate::version()
+        crate::lapack().map_or_else(crate::version, |lapack| format!("{} with {lapack}", crate::version()))
     }
 
     fn solve(&self, size: ImageSize, views: &[Vec<Control>]) -> Result<BoardSolution, String> {

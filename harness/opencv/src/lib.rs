@@ -4,9 +4,11 @@ pub mod boards;
 pub mod calibrate_camera;
 pub mod chessboard;
 pub mod chessboard_sb;
+mod lapack;
 pub mod subpix;
 
 use calibench_measure::{BoardDetector, Registry};
+pub use lapack::lapack;
 
 /// Every method of this build: ours and OpenCV's.
 pub fn registry() -> Registry {

@@ -84,7 +84,7 @@ fn exact_sights_give_the_cameras_that_took_them() {
     }
     let counts = adjusted.solution.counts();
     // Ten poses and lenses of three parameters, sixty points; seven of the frame are held.
-    assert_eq!((counts.observations, counts.unknowns, counts.constraints), (1200, 90 + 180, 7));
+    assert_eq!((counts.observations(), counts.unknowns, counts.constraints), (1200, 90 + 180, 7));
 }
 
 /// A sight whose point is on the other side of the camera: the mirrored ray gives the same pixel, and the adjustment is the one of a camera that looks the other way.

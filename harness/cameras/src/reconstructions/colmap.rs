@@ -42,21 +42,20 @@ fn part(folder: &Path, name: &str) -> Result<(PathBuf, Vec<u8>, bool), CameraFil
 }
 
 /// `read` of a part, whose name goes into errors.
-fn parsed<T>(folder: &Path, name: &str, read: impl Fn(&[u8], bool) -> Result<T, CameraFileError>) -> Result<T, CameraFileError> {
+fn parsed<T>(folder: &Path, name: &str, read: impl FnOnce(&[u8], bool) -> Result<T, CameraFileError>) -> Result<T, CameraFileError> {
     let (path, bytes, is_binary) = part(folder, name)?;
     read(&bytes, is_binary).map_err(|error| error.in_file(&path.display().to_string()))
 }
 
 pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruction, CameraFileError> {
     let options = ReadOptions { size, ..ReadOptions::default() };
-    let mut out = Reconstruction::default();
-    out.cameras = parsed(folder, PARTS[0], |bytes, is_binary| cameras(bytes, is_binary, &options))?;
-    let (points, places) = parsed(folder, PARTS[2], |bytes, is_binary| points(bytes, is_binary))?;
-    out.points = points;
+    let cameras = parsed(folder, PARTS[0], |bytes, is_binary| cameras(bytes, is_binary, &options))?;
+    let (points, places) = parsed(folder, PARTS[2], points)?;
+    let mut out = Reconstruction { cameras, points, ..Reconstruction::default() };
     let by_id: HashMap<String, usize> = out.cameras.iter().enumerate().map(|(place, camera)| (camera.named.name.clone(), place)).collect();
     let mut unknown = 0;
     parsed(folder, PARTS[1], |bytes, is_binary| {
-        let mut take = |image: Image, seen: Vec<([f64; 2], u64)>| {
+        let mut take = |image: Image, seen: Vec<Seen>| {
             let missing =
                 || CameraFileError::new(format!("camera {} is not in the list of cameras", image.camera)).of(shortened(&image.name));
             let camera = *by_id.get(&image.camera.to_string()).ok_or_else(missing)?;
@@ -148,11 +147,14 @@ fn text_of(bytes: &[u8]) -> Result<&str, CameraFileError> {
     std::str::from_utf8(bytes).map_err(|_| CameraFileError::new("expected text in UTF-8, found other bytes"))
 }
 
-/// Images, and of each the image points that have an object point, with its number.
+/// An image point, from the corner of the first pixel, and the number of its object point.
+type Seen = ([f64; 2], u64);
+
+/// Images, and of each the image points that have an object point.
 fn out_of(
     bytes: &[u8],
     is_binary: bool,
-    take: &mut dyn FnMut(Image, Vec<([f64; 2], u64)>) -> Result<(), CameraFileError>,
+    take: &mut impl FnMut(Image, Vec<Seen>) -> Result<(), CameraFileError>,
 ) -> Result<(), CameraFileError> {
     if !is_binary {
         for (line, image, points) in lines_with_points(text_of(bytes)?) {
@@ -184,7 +186,7 @@ fn out_of(
     Ok(())
 }
 
-fn seen_in_text(line: &str) -> Result<Vec<([f64; 2], u64)>, CameraFileError> {
+fn seen_in_text(line: &str) -> Result<Vec<Seen>, CameraFileError> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let (triples, rest) = words.as_chunks::<3>();
     if !rest.is_empty() {

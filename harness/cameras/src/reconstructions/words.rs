@@ -18,7 +18,7 @@ impl<'a> Words<'a> {
     /// The next word; `what` is named if there is none.
     pub(super) fn word(&mut self, what: &str) -> Result<&'a str, CameraFileError> {
         let begin = self.rest.find(|c: char| !c.is_ascii_whitespace()).unwrap_or(self.rest.len());
-        self.line += self.rest.as_bytes()[..begin].iter().filter(|byte| **byte == b'\n').count();
+        self.line += self.rest[..begin].matches('\n').count();
         self.rest = &self.rest[begin..];
         if self.rest.is_empty() {
             return Err(CameraFileError::new(format!("ends before {what}; it was cut off or its counts are wrong")).on_line(self.line));

@@ -12,7 +12,7 @@ use clap::{Args, ValueEnum};
 
 use super::super::context::Context;
 use super::super::output;
-use super::{Calibrate, Outputs, sets};
+use super::{Calibrate, sets};
 use crate::failure::Failure;
 
 #[derive(Args)]

@@ -169,6 +169,23 @@ fn cells_are_compared_with_what_identifies_them() {
     assert!(larger.iter().any(|(verdict, _, metric)| (*verdict, *metric) == (Verdict::Fails, "rms_error")), "worse is worse: {larger:?}");
 }
 
+/// Debian's own linear algebra and another one end elsewhere; the same one must not.
+#[test]
+fn what_a_solver_makes_of_another_linear_algebra_informs() {
+    let with = |dx: f64, lapack: &str| {
+        let mut cells: Cells<PointSums> = Cells::new("f/s", "", 7, Coordinates::Errors);
+        let version = format!("1, opencv_subpix:window=11 4.6.0, calibrateCamera 4.6.0 with {lapack}");
+        let points = method([(0, "a", kept(dx))]).points;
+        cells.add("x", &holding(Coordinates::Errors, MethodTable { points, ..MethodTable::new(version.into()) }));
+        cells
+    };
+    let found = |a: &Cells<PointSums>, b: &Cells<PointSums>| a.compare(b).into_iter().map(|f| (f.verdict, f.metric)).collect::<Vec<_>>();
+    let base = with(0.1, "lapack/liblapack.so.3.11.0");
+    assert_eq!(found(&base, &with(0.099, "lapack/liblapack.so.3.11.0")), [(Verdict::Changed, "digest")]);
+    let other = found(&base, &with(0.099, "openblas-pthread/liblapack.so.3"));
+    assert!(other.contains(&(Verdict::Informs, "digest")) && other.iter().all(|(verdict, _)| *verdict == Verdict::Informs), "{other:?}");
+}
+
 #[test]
 fn a_method_that_is_new_in_a_cell_is_not_blessed() {
     let with = |second: bool| {
