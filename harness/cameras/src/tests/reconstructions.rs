@@ -246,7 +246,7 @@ fn mistakes_are_named_with_their_place() {
         ),
         ("problem.txt", cut(&bal(), 40), "ends before the nine numbers of camera 0"),
         ("problem.txt", bal() + "1\n", "expected the end of the file, found `1`"),
-        ("problem.txt", bal().replacen("7e2", "-7e2", 1), "expected a number above zero, found -700"),
+        ("problem.txt", bal().replacen("\n7e2\n", "\n-7e2\n", 1), "expected a number above zero, found -700"),
         ("bundle.out", bundler().replacen(" 3 7 ", " 4 7 ", 1), "`point 0`: camera 4 is not there; expected 0 to 3"),
         ("bundle.out", cut(&bundler(), 25), "ends before"),
         ("sfm_data.json", openmvg().replacen("\"center\"", "\"centre\"", 1), "has no `center`"),
