@@ -137,7 +137,10 @@ fn a_problem_of_bundle_adjustment_in_the_large_ends_where_another_program_ends()
         doubts.contains(&format!("{} image points are of points behind their cameras", reference["behind_camera_at_start"])),
         "{doubts}"
     );
-    assert_eq!(number(&found["counts"]["observations"]), 2.0 * number(&reference["observations"]));
+    // Some points run off to where their rays would be parallel: they have no place, and take no part.
+    let taken = number(&found["counts"]["image_points"]);
+    assert!((0.99..1.0).contains(&(taken / number(&reference["observations"]))), "{taken}");
+    assert!(found["warnings"].to_string().contains("since their rays are as good as parallel"), "{}", found["warnings"]);
 }
 
 /// A sheet of a hundred targets, four of them known: y is divided by the scale at which the reference has its minimum, which no parameter of ours is.

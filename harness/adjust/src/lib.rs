@@ -37,6 +37,7 @@ pub use quality::{
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
 pub use solution::{Options, Solution, adjust};
+pub use undetermined::far_points;
 
 /// The example of the README.
 #[cfg(doctest)]

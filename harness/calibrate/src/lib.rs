@@ -16,6 +16,7 @@ mod doubted;
 mod eccentricity;
 mod ended;
 mod error;
+mod far;
 mod finding;
 mod from_images;
 mod gross_errors;

@@ -42,6 +42,8 @@ pub struct Prepared {
     pub left_out: Vec<LeftOut>,
     /// Targets that a method was given and that have no position; [`prepare`] leaves it empty. They have a row in the residuals' table.
     pub unmeasured: LostRows,
+    /// Points of a reconstruction that take no part, since their rays are as good as parallel.
+    pub far: Vec<String>,
     /// Start values were given for everything, and are not to be looked for.
     pub(crate) is_given: bool,
 }
@@ -82,6 +84,7 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         sights,
         left_out,
         unmeasured: LostRows::default(),
+        far: Vec::new(),
         is_given: false,
     })
 }

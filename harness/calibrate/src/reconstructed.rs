@@ -1,6 +1,7 @@
 //! Reconstructions of other tools, adjusted anew: their cameras, orientations and points are start values of a free network.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use calibench_adjust::{Exterior, ObjectPoint, Use};
@@ -8,15 +9,20 @@ use calibench_diagnostics::nearest;
 use calibench_model::camera::{Camera, CameraModel, NoCounterpart, Ray};
 use calibench_model::observation::Start;
 use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoint, TieSight};
-use calibench_model::{ControlRow, LostRows, NamedCamera, Points, Pose, Reconstruction};
+use calibench_model::{ControlRow, LostRows, NamedCamera, Points, Pose, Reconstruction, upper_median};
 use glob::Pattern;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use crate::start::Starts;
 use crate::{Calibration, CalibrationError, DatumChoice, LeftOut, Optics, Prepared, Settings, Shape, Survey, few, network};
 
 /// Image points of an image, and images of a point, from which either is determined.
 const FEWEST: (usize, usize) = (4, 2);
+
+/// Of points that hold the frame: images at least, rays that part by this much, rad, and distance from the middle at most, in medians.
+const HELD: (usize, f64, f64) = (3, 0.05, 3.0);
+/// Fewer hold no frame better than all.
+const ENOUGH: usize = 10;
 
 /// What is done about image points whose object point lies behind its camera, where nothing is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,7 +78,10 @@ pub fn prepare_reconstruction(
     let begins: Vec<Begin> = reconstruction.sights.iter().map(|sight| begin(reconstruction, sight)).collect();
     let counts = |begin: Begin| begin == Begin::Before || (begin == Begin::Behind && behind == Behind::Count);
     let images = images_in_use(reconstruction, &begins.iter().map(|begin| counts(*begin)).collect::<Vec<_>>());
-    let datum = if settings.datum.is_minimal() { settings.datum.clone() } else { DatumChoice::Free };
+    let datum = match &settings.datum {
+        DatumChoice::Control | DatumChoice::Fixed | DatumChoice::Free => free_datum(reconstruction),
+        other => other.clone(),
+    };
     let settings = Settings { cameras: cameras(reconstruction, &images, solved)?, datum, ..settings.clone() };
     let taken: Vec<usize> = (0..reconstruction.sights.len()).filter(|&i| images.contains(&reconstruction.sights[i].image)).collect();
     let survey = survey(reconstruction, &taken)?;
@@ -117,6 +126,7 @@ pub fn prepare_reconstruction(
             sights,
             left_out,
             unmeasured: LostRows::default(),
+            far: Vec::new(),
             is_given: true,
         },
     })
@@ -174,6 +184,22 @@ impl Calibration<'_> {
         }
         (adjusted, lengths.into_iter().map(|(sum, count)| sum / f64::from(count)).collect())
     }
+}
+
+/// Inner constraints over the points that images hold well, so that none of those that lie far off holds the frame.
+fn free_datum(reconstruction: &Reconstruction) -> DatumChoice {
+    let mut rays: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); reconstruction.points.len()];
+    for sight in &reconstruction.sights {
+        rays[sight.point].push(reconstruction.points[sight.point].position - reconstruction.images[sight.image].pose.centre);
+    }
+    let is_wide =
+        |rays: &Vec<Vector3<f64>>| rays.len() >= HELD.0 && rays.iter().any(|ray| (HELD.1..PI - HELD.1).contains(&ray.angle(&rays[0])));
+    let wide: Vec<&TiePoint> = reconstruction.points.iter().zip(&rays).filter(|(_, rays)| is_wide(rays)).map(|(point, _)| point).collect();
+    let middle = [0, 1, 2].map(|axis| upper_median(wide.iter().map(|point| point.position[axis])).unwrap_or_default());
+    let off = |point: &TiePoint| (point.position - Point3::from(middle)).norm();
+    let most = HELD.2 * upper_median(wide.iter().map(|point| off(point))).unwrap_or_default();
+    let held: Vec<String> = wide.into_iter().filter(|point| off(point) <= most).map(|point| point.name.clone()).collect();
+    if held.len() == reconstruction.points.len() || held.len() < ENOUGH { DatumChoice::Free } else { DatumChoice::FreeOver(held) }
 }
 
 /// Everything is found again by its name.

@@ -27,6 +27,9 @@ pub fn calibrate<T>(prepared: &Prepared, sets: &[Vec<String>], read: impl FnOnce
 
 /// What an adjustment gives, with weak priors where it needs them.
 fn adjusted<T>(prepared: &Prepared, read: impl FnOnce(Result<Calibration<'_>, CalibrationError>) -> T) -> T {
+    if let Some(near) = prepared.without_far_points() {
+        return read(near.adjust());
+    }
     match prepared.adjust() {
         Err(error) if error.is_undetermined() => match prepared.held_weakly() {
             Some(held) => read(held.adjust()),

@@ -1,6 +1,6 @@
 //! What other tools adjusted, adjusted anew.
 
-use calibench_calibrate::{Behind, GrossErrors, Reconstructed, Settings, Solved, prepare_reconstruction};
+use calibench_calibrate::{Behind, GrossErrors, Reconstructed, Settings, Solved, calibrate, prepare_reconstruction};
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel};
 use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoint, TieSight};
 use calibench_model::{NamedCamera, PixelPoint, Pose, Reconstruction};
@@ -154,6 +154,37 @@ fn what_is_too_little_is_left_out_by_name() {
     let (after, errors) = adjusted.reconstruction(&reconstruction);
     assert_eq!((after.images.len(), after.points.len(), after.sights.len(), errors.len()), (10, 60, 600, 60));
     assert!(errors.iter().all(|error| (0.0..2.0).contains(error)));
+}
+
+/// Rays that part as they go have no point, however far off: the adjustment would chase it for ever.
+#[test]
+fn a_point_that_runs_away_is_left_out_by_name() {
+    let (mut reconstruction, _) = ring(0.3);
+    let index = reconstruction.points.len();
+    let ahead = Vector3::new(-1.0, 0.1, -0.2).normalize();
+    reconstruction.points.push(TiePoint { name: "sun".into(), position: Point3::from(80.0 * ahead) });
+    for image in [8, 9, 0, 1, 2] {
+        let pose = reconstruction.images[image].pose;
+        let parting = ahead + 4e-4 * (pose.centre.coords - Vector3::new(6.0, 0.0, 3.0));
+        let ray = pose.ray(&(pose.centre + parting));
+        let position = reconstruction.cameras[image].named.camera.project(ray).unwrap();
+        reconstruction.sights.push(TieSight { image, point: index, position });
+    }
+    let found = prepared(&reconstruction, Behind::Count);
+    assert!(found.behind.is_empty() && found.prepared.left_out.is_empty());
+    calibrate(&found.prepared, &[], |calibration| {
+        assert_eq!(calibration.prepared.far, ["sun"]);
+        assert_eq!((calibration.prepared.left_out.len(), calibration.solution.points().len()), (5, index));
+        assert!(calibration.prepared.left_out.iter().all(|left_out| left_out.why.contains("very far away")));
+        let sigma0 = calibration.solution.sigma0().unwrap();
+        assert!((0.3..0.7).contains(&sigma0), "{sigma0}");
+    })
+    .unwrap();
+    // Where a length to it is asked for it stays, and is named.
+    let asked = Settings { lengths: vec![["3".into(), "sun".into()]], ..settings() };
+    let found = prepare_reconstruction(&reconstruction, (&Solved::Lens, Behind::Count), &asked).unwrap();
+    let error = calibrate(&found.prepared, &[], |_| ()).unwrap_err().to_string();
+    assert!(error.contains("sun"), "{error}");
 }
 
 #[test]

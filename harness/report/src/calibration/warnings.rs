@@ -54,8 +54,13 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     if lost > 0 {
         warnings.push(format!("{lost} targets were not measured: the method rejected them, or their board was not found"));
     }
+    let far = &calibration.prepared.far;
+    if !far.is_empty() {
+        let (count, names) = (far.len(), calibench_calibrate::few(far));
+        warnings.push(format!("{count} points take no part, since their rays are as good as parallel: {names}"));
+    }
     let absent = calibration.prepared.left_out.len();
-    if absent > 0 {
+    if absent > 0 && far.is_empty() {
         warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
     }
     warnings
