@@ -15,6 +15,7 @@ pub mod observation;
 pub mod points;
 pub mod pose;
 pub mod quadrature;
+pub mod reframing;
 pub mod rig_difference;
 pub mod scene;
 pub mod station;
