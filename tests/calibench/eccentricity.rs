@@ -1,6 +1,7 @@
 //! `--eccentricity`: a rendered wall of large discs, near by, whose pictures' centres lie up to half a pixel from the pictures of their centres.
 
 use std::path::Path;
+use std::process::Output;
 
 use crate::project::{run, stderr, stdout};
 
@@ -64,8 +65,13 @@ fn ran(folder: &Path, arguments: &[&str]) -> String {
     stdout(&output)
 }
 
-/// The wall, rendered; its discs measured as `points.csv`, and so with `more` arguments.
+/// The wall, rendered; its discs measured into `points`, with `more` arguments.
 fn measured(folder: &Path, points: &str, more: &[&str]) {
+    let output = measure(folder, points, more);
+    assert!(output.status.success(), "{}", stderr(&output));
+}
+
+fn measure(folder: &Path, points: &str, more: &[&str]) -> Output {
     if !folder.join("wall").exists() {
         std::fs::write(folder.join("wall.toml"), SCENARIO).unwrap();
         ran(folder, &["render", "wall.toml", "-o", "wall", "-q"]);
@@ -73,7 +79,7 @@ fn measured(folder: &Path, points: &str, more: &[&str]) {
     let mut arguments = vec!["measure", "--points", "wall/starts.csv", "-m", "parametric_circle:window=61", "-o", points, "-q"];
     let photos: Vec<String> = (1..=4).flat_map(|station| (1..=2).map(move |roll| format!("wall/s0{station}-r{roll}.png"))).collect();
     arguments.extend(photos.iter().map(String::as_str).chain(more.iter().copied()));
-    ran(folder, &arguments);
+    run(folder, &arguments)
 }
 
 /// The summary of a calibration, and how far its camera is from the true one, px RMS over the frame.
@@ -107,6 +113,16 @@ fn a_wall_of_discs_gives_its_camera_only_where_their_eccentricity_is_taken_out()
         ["--eccentricity", "control", "--camera", "wall/camera.toml", "--stations", "wall/stations.csv", "--control", "wall/control.csv"];
     measured(folder, "centred.csv", &known);
     let (_, centred) = calibrated(folder, "centred.csv", &[]);
+    assert!(centred < 1e-3, "{centred} px");
+    // The camera of images of half the size is none of these, and taken where it is said to be the same.
+    let output = run(folder, &["convert", "wall/camera.toml", "--scale", "0.5", "-o", "half.toml"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let half: Vec<&str> = known.iter().map(|word| if *word == "wall/camera.toml" { "half.toml" } else { word }).collect();
+    let output = measure(folder, "other.csv", &half);
+    let said = "half.toml: the camera is of images of 800 x 600 px, and these have 1600 x 1200 px: perhaps the same camera, its images times 2; --same-camera";
+    assert!(output.status.code() == Some(2) && stderr(&output).contains(said), "{}", stderr(&output));
+    measured(folder, "other.csv", &[&half[..], &["--same-camera"]].concat());
+    let (_, centred) = calibrated(folder, "other.csv", &[]);
     assert!(centred < 1e-3, "{centred} px");
     // Discs whose radius is not stated are not passed on as if they were corrected.
     let control = std::fs::read_to_string(folder.join("wall/control.csv")).unwrap();

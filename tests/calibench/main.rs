@@ -40,6 +40,7 @@ mod networks;
 mod opencv_gate;
 mod operators;
 mod orient;
+mod other_images;
 mod outputs;
 mod paper;
 mod parts;

@@ -11,9 +11,10 @@ use calibench_cameras::target::{Given, goal};
 use calibench_cameras::{read_camera, write_camera};
 use calibench_images::st_map::{Direction, MapFile, Overscan, StMap, Undistorted, encode};
 use calibench_model::camera::{
-    Camera, CameraModel, Eucm, Fov, ImageSize, Omni, OpenCv, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
+    Camera, CameraModel, Eucm, Fov, ImageSize, Omni, OpenCv, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye, Ray, TangentialOrder, Turn,
 };
 use calibench_model::convert::{ConvertOptions, Method};
+use calibench_model::reframing::{Crop, FrameChange, Scaling};
 use calibench_model::{NamedCamera, PixelPoint};
 
 use crate::project::root;
@@ -163,6 +164,37 @@ fn opencv_reads_its_storage_and_projects_alike() {
         agrees(&own(), "opencv", ("opencv", ending), &[4, 5, 8, 12, 14].map(opencv), 1e-8);
         agrees(&own(), "opencv", ("opencv-fisheye", ending), &[fisheye(0.0, [-0.02, 0.003, -0.001, 1e-4]), fisheye(0.002, [0.0; 4])], 1e-8);
         agrees(&own(), "opencv", ("opencv-omnidir", ending), &[omni.into()], 1e-8);
+    }
+}
+
+/// OpenCV projects with a camera of other images where the pixels of its images come to.
+#[test]
+#[cfg_attr(not(peer_opencv), ignore = "no opencv-contrib-python")]
+fn opencv_projects_into_other_images_where_their_pixels_come_to() {
+    let plain = FrameChange::default();
+    let crop = Some(Crop { x: 101, y: 50, size: ImageSize { width: 1000, height: 750 } });
+    let squeezed = Some(Scaling::Size(ImageSize { width: 600, height: 600 }));
+    let mut changes = vec![FrameChange { crop, ..plain }, FrameChange { scaling: squeezed, ..plain }];
+    changes.extend([Scaling::Binned(2), Scaling::Times(1.7)].map(|scaling| FrameChange { crop, scaling: Some(scaling), ..plain }));
+    changes.extend(Turn::ALL.map(|turn| FrameChange { crop, scaling: Some(Scaling::Times(0.5)), turn: Some(turn) }));
+    let omni = Omni { size: SIZE, fx: 1100.0, fy: 1101.0, cx: 605.0, cy: 445.0, xi: 1.3, k: [-0.1, 0.02], p: [2e-4, 1e-4] };
+    let cameras = [opencv(4), opencv(5), opencv(8), opencv(12), fisheye(0.0, [-0.02, 0.003, -0.001, 1e-4]), omni.into()];
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("camera.yml");
+    for (camera, change) in cameras.iter().flat_map(|camera| changes.iter().map(move |change| (camera, change))) {
+        let by = change.of(SIZE).unwrap();
+        let made = by.camera(camera).unwrap();
+        write_camera(&file, calibench_cameras::format_named("opencv-yaml").unwrap(), &[NamedCamera::new("", made)]).unwrap();
+        let (points, places) = sights(camera);
+        let turned = |[x, y, z]: &[f64; 3]| {
+            let ray = by.ray(Ray { x: *x, y: -*y, z: -*z });
+            [ray.x, -ray.y, -ray.z]
+        };
+        let found = asked(&own(), "opencv", &file, &points.iter().map(turned).collect::<Vec<_>>(), &[]);
+        for (found, place) in found.iter().zip(&places) {
+            let off = PixelPoint::new(found[0], found[1]).distance(by.point(*place));
+            assert!(off < 1e-9, "{off:e} px at {place:?}, {by}: {camera:?}");
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::fit::{FitError, fit_to_format, fit_to_models};
 use super::recognised::are_within;
 use super::target::{Goal, Way};
-use super::{NamedCamera, ParameterCovariance, ReadOptions, camera_bytes, parse_camera, splined};
+use super::{CameraFormat, NamedCamera, ParameterCovariance, ReadOptions, camera_bytes, parse_camera, splined};
 
 /// A file gives a camera back that pictures the same within so many px: rounding.
 const BACK: f64 = 1e-8;
@@ -91,18 +91,29 @@ pub fn converted(
     Ok(Converted { camera, conversion, model })
 }
 
+/// `source` as it is, in its own convention.
+pub fn unchanged(source: &NamedCamera) -> Converted {
+    let camera = NamedCamera { notes: Vec::new(), ..source.clone() };
+    Converted { conversion: splined::as_they_are(camera.camera), camera, model: None }
+}
+
 /// Whether none of the goal's models has a formula for the camera, and yet a file of the format gives it back: what the tool holds beyond the models that others are
 /// fitted to.
 fn holds_only_as_it_is(source: &NamedCamera, goal: &Goal, pitch_um: Option<f64>) -> bool {
     let has_formula = goal.targets(pitch_um).iter().any(|target| target.is_exact_for(&source.camera));
     let camera = NamedCamera { pitch_um, ..NamedCamera::new(String::new(), source.camera) };
-    let options = ReadOptions { from: Some(goal.format), ..ReadOptions::of_written(goal.format, source.camera.size()) };
+    !has_formula && holds(goal.format, &camera)
+}
+
+/// Whether a file of a format gives a camera back as it is.
+pub(super) fn holds(format: &'static CameraFormat, camera: &NamedCamera) -> bool {
+    let options = ReadOptions { from: Some(format), ..ReadOptions::of_written(format, camera.camera.size()) };
     let given_back = || {
-        let bytes = camera_bytes(goal.format, &[camera]).ok()?;
+        let bytes = camera_bytes(format, std::slice::from_ref(camera)).ok()?;
         let read = parse_camera("", &bytes, &options).ok()?;
-        Some(are_within(BACK, &source.camera, &read.cameras.first()?.camera))
+        Some(are_within(BACK, &camera.camera, &read.cameras.first()?.camera))
     };
-    !has_formula && given_back().unwrap_or(false)
+    given_back().unwrap_or(false)
 }
 
 /// A rotation of rays in the axes of camera files, where y points down and z forward.

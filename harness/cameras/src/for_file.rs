@@ -7,7 +7,7 @@ use calibench_model::camera::{Camera, TangentialOrder};
 use calibench_model::convert::{Conversion, ConvertOptions, Method};
 use thiserror::Error;
 
-use super::conversion::{ConversionError, Converted, converted};
+use super::conversion::{ConversionError, Converted, converted, holds};
 use super::target::{Given, TargetError, goal};
 use super::{CameraFormat, FORMATS, NamedCamera, camera_bytes};
 
@@ -74,6 +74,19 @@ pub fn beside(path: &Path, source: &NamedCamera) -> Option<(PathBuf, FileCamera)
     Some((own_file(&path.with_extension(file.format.extension), &own), file))
 }
 
+/// The format for a camera that is to stay in its convention: that of the file that it was read from, or of the ending of `path` where that asks for another one.
+/// `None` where neither gives the camera back as it is.
+pub fn kept_format(path: Option<&Path>, read: &'static CameraFormat, source: &NamedCamera) -> Option<&'static CameraFormat> {
+    let asked = path.and_then(ending);
+    let other = asked.as_ref().is_some_and(|asked| spelt(asked) != spelt(read.extension));
+    let by_ending = || holds_as_it_is(path?, source).filter(|format| Some(spelt(format.extension)) == asked.as_deref().map(spelt));
+    // Splines are read with another model that is fitted to them.
+    let has_splines = |format: &CameraFormat| source.splines.is_some() && format.keeps.splines;
+    let gives_back = |&format: &&'static CameraFormat| format.is_written() && (has_splines(format) || holds(format, source));
+    let asked_for = if other { by_ending().filter(gives_back) } else { None };
+    asked_for.or_else(|| Some(read).filter(gives_back))
+}
+
 fn in_convention(path: &Path, source: &NamedCamera, to: &str) -> Result<FileCamera, FileCameraError> {
     let given = Given { source, pitch_um: source.pitch_um, base_mm: None, order: TangentialOrder::OpenCv, output: Some(path) };
     let goal = goal(to, &given)?;
@@ -116,9 +129,13 @@ fn by_ending(path: &Path, source: &NamedCamera) -> Option<&'static str> {
     }
 }
 
+/// An ending in one spelling.
+fn spelt(ending: &str) -> String {
+    if ending == "yml" { "yaml".to_owned() } else { ending.to_owned() }
+}
+
 /// The first format that holds the camera exactly: with the file's ending, or with any.
 fn holds_as_it_is(path: &Path, source: &NamedCamera) -> Option<&'static CameraFormat> {
-    let spelt = |ending: &str| if ending == "yml" { "yaml".to_owned() } else { ending.to_owned() };
     let ending = ending(path).map(|ending| spelt(&ending));
     let fits = |format: &&&'static CameraFormat| format.is_written() && camera_bytes(format, std::slice::from_ref(source)).is_ok();
     let same = |format: &&&'static CameraFormat| Some(spelt(format.extension)) == ending;

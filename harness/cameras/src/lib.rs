@@ -52,7 +52,7 @@ pub use format::{CameraFormat, Keeps, KeptCovariance, KeptPose, Model};
 pub use formats::{FORMATS, format_named};
 pub use kalibr_target::{kalibr_target, read_kalibr_target};
 pub use lists::{CameraList, ListWriter, Pieces, inputs_of};
-pub use published::published_camera;
+pub use published::{first_camera, published_camera};
 pub use source::LARGEST_FILE;
 use source::Source;
 
@@ -83,7 +83,7 @@ pub enum Lens {
 /// What a file may leave open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// Size of the images, for files that do not state it; one that contradicts the file is an error.
+    /// Size of the images, for files that do not state it; one that contradicts the file is an error, unless [`Self::other_size`] says otherwise.
     pub size: Option<ImageSize>,
     /// OpenCV's fisheye camera (true) or its pinhole camera (false), for files that do not say `fisheye_model`: without both, the pinhole.
     pub fisheye: Option<bool>,
@@ -93,6 +93,8 @@ pub struct ReadOptions {
     pub from: Option<&'static CameraFormat>,
     /// Keys that are left out although they may make the camera another one.
     pub ignore: Vec<String>,
+    /// A file may state another size than [`Self::size`]: its own holds.
+    pub other_size: bool,
 }
 
 impl ReadOptions {
@@ -105,7 +107,7 @@ impl ReadOptions {
     /// The size that the file states, or else the one given.
     fn size_or(&self, stated: Option<ImageSize>) -> Result<ImageSize, CameraFileError> {
         match (stated, self.size) {
-            (Some(file), Some(given)) if file != given => Err(CameraFileError::new(format!(
+            (Some(file), Some(given)) if file != given && !self.other_size => Err(CameraFileError::new(format!(
                 "the file says {} x {} px, {} x {} px were given",
                 file.width, file.height, given.width, given.height
             ))),

@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, ImageSize};
 use clap::Args;
 use glob::Pattern;
 
 use crate::failure::Failure;
-use crate::inputs::camera;
+use crate::inputs::{camera, camera_for};
+use crate::same_camera::for_images;
 
 #[derive(Args)]
 pub struct CameraFiles {
@@ -63,13 +65,40 @@ impl CameraFiles {
     /// The camera of each image.
     pub fn of(&self, images: &[String]) -> Result<Vec<Camera>, Failure> {
         let cameras = self.files.iter().map(|given| camera(&given.file, self.size)).collect::<Result<Vec<_>, _>>()?;
-        let of = |image: &String| {
-            let place = self.files.iter().position(|given| given.images.matches(image));
-            place.map(|place| cameras[place]).ok_or_else(|| {
-                let patterns: Vec<&str> = self.files.iter().map(|given| given.images.as_str()).collect();
-                Failure::input(format!("--camera: none is for image `{image}`: there are {}", patterns.join(", ")))
-            })
-        };
-        images.iter().map(of).collect()
+        images.iter().map(|image| Ok(cameras[self.place(image)?])).collect()
+    }
+
+    /// The camera of each image, whose size is known of some: of another size where `is_same` says that it is the same camera.
+    pub fn of_images(&self, images: &[String], is_same: bool, size: impl Fn(&str) -> Option<ImageSize>) -> Result<Vec<Camera>, Failure> {
+        let mut made: Vec<((usize, Option<ImageSize>), Camera)> = Vec::new();
+        let mut cameras = Vec::with_capacity(images.len());
+        for image in images {
+            let (place, size) = (self.place(image)?, size(image));
+            let known = made.iter().find(|(of, _)| *of == (place, size)).map(|(_, camera)| *camera);
+            let file = &self.files[place].file;
+            // A size that the user states beside a file is that of its camera.
+            let of = || match size {
+                Some(size) if self.size.is_none_or(|stated| stated == size) => camera_for(file, size, is_same),
+                Some(size) => {
+                    let named = NamedCamera::new("", camera(file, self.size)?);
+                    Ok(for_images(file, &named, size, is_same)?.camera)
+                }
+                None => camera(file, self.size),
+            };
+            let camera = known.map_or_else(of, Ok)?;
+            if known.is_none() {
+                made.push(((place, size), camera));
+            }
+            cameras.push(camera);
+        }
+        Ok(cameras)
+    }
+
+    /// The place of the file that is for an image.
+    fn place(&self, image: &str) -> Result<usize, Failure> {
+        self.files.iter().position(|given| given.images.matches(image)).ok_or_else(|| {
+            let patterns: Vec<&str> = self.files.iter().map(|given| given.images.as_str()).collect();
+            Failure::input(format!("--camera: none is for image `{image}`: there are {}", patterns.join(", ")))
+        })
     }
 }

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use calibench_cameras::{ReadOptions, inputs_of, read_camera_with};
-use calibench_model::PixelPoint;
-use calibench_model::camera::{CameraModel, ImageSize};
+use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use calibench_model::convert::{Difference, DifferenceOptions, Vector, difference, difference_at};
+use calibench_model::reframing::same_camera;
 use calibench_model::rig_difference::rig_difference;
+use calibench_model::{NamedCamera, PixelPoint};
 use calibench_report::json::{DifferenceAnswer, Part};
 use calibench_report::{Hull, plain};
 use clap::Args;
@@ -17,6 +18,7 @@ use super::reading::{Reading, shown};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 use crate::inputs::read_measured;
+use crate::same_camera::for_images;
 
 #[derive(Args)]
 pub struct Diff {
@@ -24,6 +26,9 @@ pub struct Diff {
     first: PathBuf,
     /// Another one, for images of the same size
     second: PathBuf,
+    /// The second camera is of images of another size, of the same aspect: it is compared as it is in images of the size of the first
+    #[arg(long, conflicts_with = "rig")]
+    same_camera: bool,
     /// Draw the difference over the frame, as PNG, SVG or PDF by the ending
     #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
@@ -57,14 +62,11 @@ impl Diff {
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let camera = |path: &Path| {
             let named = self.reading.one(path)?;
-            named.doubt().map_or(Ok(named.camera), |doubt| Err(Failure::input(format!("{}: {doubt}", shown(path)))))
+            named.doubt().map_or(Ok(named), |doubt| Err(Failure::input(format!("{}: {doubt}", shown(path)))))
         };
-        let (first, second) = (camera(&self.first)?, camera(&self.second)?);
-        let (a, b) = (first.size(), second.size());
-        if a != b {
-            let sizes = format!("{} x {} px and {} x {} px", a.width, a.height, b.width, b.height);
-            return Err(Failure::input(format!("the images of the two cameras differ in size: {sizes}; expected the same")));
-        }
+        let (first, second) = (camera(&self.first)?.camera, camera(&self.second)?);
+        let a = first.size();
+        let second = self.in_size(&second, a)?;
         let options = DifferenceOptions {
             region: region(self.radius),
             rotation: !self.no_rotation,
@@ -92,6 +94,21 @@ impl Diff {
         let Some(plot) = &plot else { return Ok(()) };
         let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
         Ok(field(&title, &first, &found.vectors, measured).write(plot)?)
+    }
+
+    /// The second camera for images of the first one's size.
+    fn in_size(&self, second: &NamedCamera, a: ImageSize) -> Result<Camera, Failure> {
+        if self.same_camera {
+            return Ok(for_images(&self.second, second, a, true)?.camera);
+        }
+        let file = shown(&self.second);
+        let taken = same_camera(second, a, false).map_err(|other| {
+            let b = second.camera.size();
+            let sizes = format!("{} x {} px and {} x {} px", a.width, a.height, b.width, b.height);
+            let advice = other.advice("--same-camera", &file);
+            Failure::input(format!("the images of the two cameras differ in size: {sizes}; expected the same. {file}: the camera {advice}"))
+        });
+        Ok(taken?.0.camera)
     }
 
     /// Each camera of a rig beside its first one against those of the other rig, in the order of the files.

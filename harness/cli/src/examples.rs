@@ -120,6 +120,9 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench convert camera.xml --to opencv -o camera.yaml", "the format of what is read is found by content"),
             ("calibench convert camchain.yaml --all --to colmap -o cameras.txt", "every camera of a rig"),
             ("calibench convert camera.cam --to photogrammetric --json", "what it costs, for a program"),
+            ("calibench convert camera.yaml --size 800x600 -o half.yaml", "the same camera in images of half the size"),
+            ("calibench convert camera.yaml --crop 0,150,1600,900 --size 1280x720 -o video.yaml", "in a video mode"),
+            ("calibench convert camera.yaml --turn 90 -o portrait.yaml", "turned clockwise, from landscape to portrait"),
         ],
     ),
     (
@@ -132,6 +135,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench diff a.xml b.yaml --plot diff.png", "px over the frame, after the best rotation"),
             ("calibench diff a.xml b.yaml --points points.csv --distance 5", "where points were measured, and on an object"),
             ("calibench diff before.yaml after.yaml --rig --distance 2", "two rigs, at 2 units before them"),
+            ("calibench diff half.yaml whole.yaml --same-camera", "of images of two sizes"),
         ],
     ),
     ("stmap", &[("calibench stmap camera.xml --redistort --overscan auto -o map.exr", "for Nuke or Blender")]),

@@ -5,10 +5,11 @@ use std::path::Path;
 use calibench_cameras::{CameraList, ReadOptions, read_camera_with};
 use calibench_exchange::PointFile;
 use calibench_exchange::points::{Check, read_points_checked};
-use calibench_model::Points;
 use calibench_model::camera::{Camera, ImageSize};
+use calibench_model::{NamedCamera, Points};
 
 use crate::failure::Failure;
+use crate::same_camera::for_images;
 
 /// The rows of a point file that have a position, with a word about the others.
 pub fn read_measured(path: &Path) -> Result<Points, Failure> {
@@ -34,11 +35,20 @@ pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
 
 /// The first camera of a file.
 pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    let options = ReadOptions { size, ..ReadOptions::default() };
-    let (cameras, count) = match CameraList::open(path, &options)? {
+    Ok(first(path, &ReadOptions { size, ..ReadOptions::default() })?.camera)
+}
+
+/// The first camera of a file for images of `size`, of another size where `is_same` says that it is the same camera.
+pub fn camera_for(path: &Path, size: ImageSize, is_same: bool) -> Result<Camera, Failure> {
+    let named = first(path, &ReadOptions { size: Some(size), other_size: true, ..ReadOptions::default() })?;
+    Ok(for_images(path, &named, size, is_same)?.camera)
+}
+
+fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
+    let (cameras, count) = match CameraList::open(path, options)? {
         Some(list) => (list.pieces(1)?.next().transpose()?.unwrap_or_default(), list.len()),
         None => {
-            let file = read_camera_with(path, &options)?;
+            let file = read_camera_with(path, options)?;
             let count = file.cameras.len();
             (file.cameras, count)
         }
@@ -46,9 +56,9 @@ pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
     if count > 1 {
         say!("{}: the first of {count} cameras", path.display());
     }
-    let first = cameras.first().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))?;
+    let first = cameras.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))?;
     if let Some(doubt) = first.doubt() {
         return Err(Failure::input(format!("{}: {doubt}", path.display())));
     }
-    Ok(first.camera)
+    Ok(first)
 }

@@ -50,6 +50,7 @@ mod render;
 mod report;
 mod resect;
 mod run;
+mod same_camera;
 mod schema;
 mod show;
 mod speed;
@@ -169,7 +170,8 @@ enum Command {
 
 /// The command line with all that its help says.
 fn command_line() -> clap::Command {
-    examples::with_examples(Arguments::command())
+    let line = examples::with_examples(Arguments::command());
+    line.mut_subcommand("convert", |convert| convert.mut_arg("size", |size| size.help(convert::SIZE)))
 }
 
 /// Runs the command line of this process.

@@ -42,6 +42,9 @@ pub struct Reading {
     /// A key that is not known and left out although it may make the camera another one; may be repeated
     #[arg(long = "ignore-key", value_name = "NAME")]
     ignore: Vec<String>,
+    /// A file may state another size than `--size`: that is of other images.
+    #[arg(skip)]
+    other_size: bool,
 }
 
 /// Which of two decentring coefficients multiplies r^2 + 2 x^2.
@@ -113,7 +116,29 @@ impl Reading {
             Lens::Brown => calibench_cameras::Lens::Brown,
             Lens::Division => calibench_cameras::Lens::Division,
         });
-        ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from, ignore: self.ignore.clone() }
+        ReadOptions {
+            size: self.size,
+            fisheye: self.fisheye.then_some(true),
+            lens,
+            from: self.from,
+            ignore: self.ignore.clone(),
+            other_size: self.other_size,
+        }
+    }
+
+    /// Takes `--size` as that of other images where a file states its own.
+    pub fn allow_other_size(&mut self) {
+        self.other_size = true;
+    }
+
+    /// The `--size` that was given.
+    pub const fn size(&self) -> Option<ImageSize> {
+        self.size
+    }
+
+    /// Whether a file states the size of its images.
+    pub fn states_size(&self, path: &Path) -> bool {
+        read_camera_with(path, &ReadOptions { size: None, ..self.options() }).is_ok()
     }
 
     /// Opens a file, once: a pipe has no second time.
@@ -146,10 +171,11 @@ impl Reading {
         one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", shown(path))))
     }
 
-    /// All cameras, with the same words, each once.
-    pub fn all(&self, path: &Path) -> Result<Vec<NamedCamera>, Failure> {
+    /// All cameras with their format, with the same words, each once.
+    pub fn all(&self, path: &Path) -> Result<(&'static CameraFormat, Vec<NamedCamera>), Failure> {
         self.is_of_all()?;
-        Ok(self.decided(path, read_camera_with(path, &self.options())?))
+        let file = read_camera_with(path, &self.options())?;
+        Ok((file.format, self.decided(path, file)))
     }
 
     /// All cameras of a list that is read in pieces, with the same words; `None` for other files.
@@ -210,6 +236,14 @@ pub enum Opened {
 }
 
 impl Opened {
+    /// The format.
+    pub fn format(&self) -> &'static CameraFormat {
+        match self {
+            Self::List(list) => list.format(),
+            Self::Whole(file) => file.format,
+        }
+    }
+
     /// A file as it is, of a long list its first `most` cameras; and how many it holds.
     pub fn file(&self, most: usize) -> Result<(CameraFile, usize), Failure> {
         Ok(match self {

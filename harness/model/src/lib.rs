@@ -16,6 +16,7 @@ pub mod points;
 pub mod pose;
 pub mod quadrature;
 pub mod reconstruction;
+pub mod reframing;
 pub mod rig_difference;
 pub mod scene;
 pub mod station;

@@ -131,6 +131,21 @@ class Camera:
         `pitch` (um) for conventions in mm, `base` (mm) for Ebner's; `radius` (px) fits and holds only so far from the axis;
         `rotation` lets the fit turn the camera; `accept` takes residuals above 0.5 px, which are refused otherwise.
         """
+    def reframe(
+        self,
+        *,
+        crop: Optional[Tuple[int, int, int, int]] = None,
+        size: Optional[_Size] = None,
+        scale: Optional[float] = None,
+        binned: Optional[int] = None,
+        turn: Optional[int] = None,
+    ) -> "Camera":
+        """The same camera in other images: of a part of them, then in another size, then turned: as `calibench convert` does.
+
+        `crop` is the first column and row, counted from 0, columns and rows; `size` is (columns, rows), `scale` a factor, `binned`
+        how many pixels along each side make one: one of the three; `turn` is 90, 180 or 270 degrees, clockwise, the camera's axes
+        with the images. Exact, covariance and pitch along; what the model does not hold is refused.
+        """
     def write(self, path: _Path, *, to: Optional[str] = None) -> None:
         """Write a file: as converted or read, in the convention `to`, or in the one that the file's ending asks for."""
     def project(self, points: ArrayLike) -> NDArray[np.float64]:

@@ -24,6 +24,7 @@ use crate::error::{CalibrationError, doubt, in_python, input};
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::points::{image_names, points};
 use crate::pose::Pose;
+use crate::reframing::of_images;
 use crate::stopped::interruptible;
 
 /// A calibrated camera and its quality: see `calibench.Calibration`.
@@ -208,13 +209,14 @@ pub fn calibrate(
     let names = image_names(images, xy.len())?;
     let points = points(&xy, &names, &board)?;
     let (model, bent) = lens_and_board(model);
+    let size = size_of(size)?;
     let optics = Optics {
         pitch_um: positive(pitch, "pitch")?,
         model,
         solve,
         priors: priors.unwrap_or_default().iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
-        start: start.map(|camera| camera.named.camera),
-        ..Optics::new(size_of(size)?)
+        start: start.map(|camera| Ok::<_, PyErr>(of_images(camera, size, "start: the camera")?.camera)).transpose()?,
+        ..Optics::new(size)
     };
     let settings = Settings {
         datum: datum.parse().map_err(input)?,

@@ -22,6 +22,7 @@ use crate::arrays::{NOWHERE, of_matrix, of_positions, positions, rows, table};
 use crate::error::{camera as refused, doubt, input, lost};
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
+use crate::reframing::reframing;
 
 /// A camera: see `calibench.Camera`.
 #[pyclass(frozen, module = "calibench", name = "Camera")]
@@ -168,6 +169,25 @@ impl Camera {
             made.unverified(py)?;
         }
         Ok(made)
+    }
+
+    /// The same camera in other images: of a part of them, in another size, turned.
+    #[pyo3(signature = (*, crop = None, size = None, scale = None, binned = None, turn = None))]
+    fn reframe(
+        &self,
+        py: Python<'_>,
+        crop: Option<[i64; 4]>,
+        size: Option<&Bound<'_, PyAny>>,
+        scale: Option<f64>,
+        binned: Option<u32>,
+        turn: Option<u16>,
+    ) -> PyResult<Self> {
+        let by = reframing(self.named.camera.size(), crop, size, (scale, binned), turn)?;
+        let (named, dropped) = by.named(&self.named).map_err(refused)?;
+        for what in dropped {
+            lost(py, &format!("lost: {what}"))?;
+        }
+        Ok(Self { named, format: self.format, fit: None })
     }
 
     /// Writes a camera file: as it was converted, or in the convention `to`, or in the one that the file's ending asks for.

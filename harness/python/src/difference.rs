@@ -11,6 +11,7 @@ use crate::camera::Camera;
 use crate::error::{camera as refused, input};
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
+use crate::reframing::of_images;
 
 /// How far two cameras differ over the frame: see `calibench.Difference`.
 #[pyclass(frozen, get_all, module = "calibench", name = "Difference")]
@@ -62,11 +63,7 @@ pub fn diff(
             return Err(refused(doubt));
         }
     }
-    if a.size() != b.size() {
-        let (a, b) = (a.size(), b.size());
-        let sizes = format!("{} x {} px and {} x {} px", a.width, a.height, b.width, b.height);
-        return Err(input(format!("the images of the two cameras differ in size: {sizes}; expected the same")));
-    }
+    of_images(second, a.size(), "the images of the two cameras differ in size: the second")?;
     if points.is_some() && !rotation {
         return Err(input("points: the rotation is the best at these; with rotation=False there is none"));
     }

@@ -7,7 +7,6 @@ use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
 use calibench_exchange::PointFile;
 use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
-use calibench_model::camera::CameraModel;
 use calibench_model::{LostRow, LostRows};
 use calibench_photographs::{Finder, MeasuredBoards, Reader, measured_boards, method_info};
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
@@ -24,6 +23,7 @@ use crate::error::{doubt, input};
 use crate::measuring::Measured;
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::points::{image_names, points};
+use crate::reframing::of_images;
 use crate::session::{methods_of_boards, with_project};
 use crate::stopped::interruptible;
 
@@ -127,9 +127,7 @@ pub fn judge(
 }
 
 fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<&Camera>) -> PyResult<Judgement> {
-    if let Some(own) = camera.map(|camera| camera.named.camera.size()).filter(|own| *own != material.size) {
-        return Err(input(format!("camera: is of images of {} x {} px", own.width, own.height)));
-    }
+    camera.map(|camera| of_images(camera, material.size, "camera: it")).transpose()?;
     let options = Options {
         models: asked.models,
         pitch_um: asked.pitch_um,

@@ -20,6 +20,7 @@ mod pickled;
 mod points;
 mod pool;
 mod pose;
+mod reframing;
 mod rendering;
 mod reporting;
 mod restored;

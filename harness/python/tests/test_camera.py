@@ -109,6 +109,25 @@ def test_two_cameras_are_compared_as_on_the_command_line(camera, file, program, 
         cb.diff(camera, cb.Camera.read(smaller))
 
 
+def test_it_is_the_same_in_other_images(camera, file, program, tmp_path):
+    half = camera.reframe(size=(320, 240))
+    program("convert", file, "--size", "320x240", "-o", tmp_path / "half.yaml")
+    theirs = cb.Camera.read(tmp_path / "half.yaml")
+    assert half.size == (320, 240) and np.allclose(list(half.parameters.values()), list(theirs.parameters.values()), rtol=1e-14)
+    points = np.array([[0.1, 0.2, 1.0], [-0.3, 0.1, 1.2], [0.0, 0.0, 1.0]])
+    assert np.allclose(half.project(points), (camera.project(points) + 0.5) / 2 - 0.5, atol=1e-9)
+    part = camera.reframe(crop=(10, 20, 600, 400), binned=4, turn=90)
+    seen = ((camera.project(points) + 0.5 - [10, 20]) / 4) - 0.5
+    turned = points * [1, 1, 1] @ [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]
+    assert part.size == (100, 150) and np.allclose(part.project(turned), np.column_stack([99 - seen[:, 1], seen[:, 0]]), atol=1e-9)
+    assert cb.diff(camera, half.reframe(scale=2.0)).rms_px < 1e-9
+    for wrong in ({"size": (320, 240), "scale": 0.5}, {"turn": 45}, {"crop": (0, 0, 641, 480)}, {"scale": 0.0}, {"binned": 0}, {"crop": (-1, 0, 9, 9)}):
+        with pytest.raises(cb.InputError):
+            camera.reframe(**wrong)
+    with pytest.raises(cb.InputError, match="perhaps the same camera, its images times 1/2; its method `reframe`"):
+        cb.diff(half, camera)
+
+
 def test_mistakes_are_named(tmp_path, camera):
     with pytest.raises(cb.CameraError, match="nowhere.yaml"):
         cb.Camera.read(tmp_path / "nowhere.yaml")

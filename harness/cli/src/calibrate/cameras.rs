@@ -1,10 +1,11 @@
 //! The cameras of a calibration: which images each took, and what is known and wanted of it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use calibench_calibrate::{Optics, Prior};
-use calibench_model::camera::ImageSize;
+use calibench_model::NamedCamera;
+use calibench_model::camera::{Camera, ImageSize};
 use calibench_photographs::Photo;
 use clap::Args;
 use glob::Pattern;
@@ -13,6 +14,7 @@ use super::super::convert::positive;
 use super::super::photos::one_size;
 use super::super::reading;
 use crate::failure::Failure;
+use crate::same_camera::for_images;
 
 #[derive(Args)]
 pub struct Cameras {
@@ -38,6 +40,9 @@ pub struct Cameras {
     /// A camera file to start from, and whose values the parameters keep that are not solved for
     #[arg(long, value_name = "[CAMERA=]FILE", value_parser = |text: &str| For::parse(text, word))]
     start: Vec<For<String>>,
+    /// The camera of --start took the images, too, if they have the same aspect and another size: it is taken as it is in theirs
+    #[arg(long, requires = "start")]
+    same_camera: bool,
 }
 
 /// A value for one camera, or for all that have none of their own.
@@ -117,6 +122,11 @@ impl Cameras {
         self.solve.iter().find(|solve| solve.camera.is_none()).map(|solve| solve.value.clone())
     }
 
+    /// A camera of a file for images of `size`, of another size where the user says that it is the same camera.
+    pub fn for_images(&self, path: &Path, named: &NamedCamera, size: ImageSize) -> Result<Camera, Failure> {
+        Ok(for_images(path, named, size, self.same_camera)?.camera)
+    }
+
     /// Whether several cameras are told apart.
     pub const fn are_several(&self) -> bool {
         !self.claims.is_empty()
@@ -187,7 +197,7 @@ impl Cameras {
             camera.start = self
                 .start(&camera.name)
                 .filter(|_| starts)
-                .map(|path| crate::inputs::camera(path.as_ref(), Some(camera.size)))
+                .map(|path| crate::inputs::camera_for(path.as_ref(), camera.size, self.same_camera))
                 .transpose()?;
         }
         Ok(cameras)

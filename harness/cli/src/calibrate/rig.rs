@@ -113,10 +113,13 @@ impl Calibrate {
     fn rig_cameras(&self, names: &[String], patterns: Option<Vec<Pattern>>, photos: &[Photo]) -> Result<Vec<Optics>, Failure> {
         let mut cameras = self.cameras.of_rig(names, patterns, photos)?;
         let Some(path) = self.cameras.common_start() else { return Ok(cameras) };
-        let options = ReadOptions { size: cameras.first().map(|camera| camera.size), ..ReadOptions::default() };
+        let options = ReadOptions { size: cameras.first().map(|camera| camera.size), other_size: true, ..ReadOptions::default() };
         let file = read_camera_with(Path::new(path), &options)?;
+        let start = |optics: &Optics, named: &NamedCamera| self.cameras.for_images(Path::new(path), named, optics.size).map(Some);
         if let [one] = &file.cameras[..] {
-            cameras.iter_mut().for_each(|optics| optics.start = Some(one.camera));
+            for optics in &mut cameras {
+                optics.start = start(optics, one)?;
+            }
             return Ok(cameras);
         }
         let by_name = |name: &str| file.cameras.iter().position(|camera| camera.name == name);
@@ -130,7 +133,7 @@ impl Calibrate {
         }
         let places = places.unwrap_or_else(|| (0..names.len()).collect());
         for (optics, place) in cameras.iter_mut().zip(places) {
-            optics.start = Some(file.cameras[place].camera);
+            optics.start = start(optics, &file.cameras[place])?;
         }
         Ok(cameras)
     }

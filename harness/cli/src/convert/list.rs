@@ -6,8 +6,9 @@ use std::io::{self, BufWriter, Seek, Write};
 use calibench_cameras::{CameraFile, CameraFileError, CameraFormat, CameraList, ListWriter, format_named};
 use rayon::prelude::*;
 
+use super::file::CamerasFile;
 use super::said::Said;
-use super::{Answer, CamerasFile, Convert, lost};
+use super::{Answer, Convert, lost};
 use crate::deliver::stream;
 use crate::failure::Failure;
 
@@ -26,7 +27,7 @@ struct Words {
 impl Convert {
     /// Converts a list to a list; false where one of them is none, and nothing is done.
     pub(super) fn in_pieces(&self, to: &CamerasFile, quiet: bool) -> Result<bool, Failure> {
-        let format = format_named(&self.to).filter(|format| self.all && format.is_written_in_pieces());
+        let format = self.to.as_deref().and_then(format_named).filter(|format| self.all && format.is_written_in_pieces());
         let Some(format) = format.filter(|_| !matches!(to, CamerasFile::Folder(_))) else { return Ok(false) };
         let Some(list) = self.reading.list(&self.file)? else { return Ok(false) };
         let mut words = Words::default();
@@ -67,7 +68,7 @@ impl Convert {
             let count = index + piece.as_ref().map_or(0, Vec::len);
             let read = CameraFile { format: list.format(), cameras: piece? };
             let numbered = self.reading.open_points().read(read).into_par_iter().enumerate();
-            let one = |(at, source)| self.one_of_many(index + at, &source, list.len() > 1, quiet);
+            let one = |(at, source)| self.one_of_many(index + at, (list.format(), &source), list.len() > 1, quiet);
             let found: Vec<Result<Answer, Failure>> = numbered.map(one).collect();
             let mut cameras = Vec::with_capacity(found.len());
             for answer in found {

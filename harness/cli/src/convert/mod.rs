@@ -1,23 +1,25 @@
 //! `calibench convert`: cameras from one convention, or one tool's file, to another.
 
+mod file;
+mod images;
 mod list;
 mod said;
 
-use std::io;
 use std::path::PathBuf;
 
-use calibench_cameras::conversion::{ConversionError, Converted, converted};
+use calibench_cameras::conversion::{ConversionError, Converted, converted, unchanged};
 use calibench_cameras::fit::{FitError, losses};
 use calibench_cameras::target::{Given, TargetError, goal};
-use calibench_cameras::{CameraFormat, camera_bytes, inputs_of};
+use calibench_cameras::{CameraFormat, inputs_of};
 use calibench_diagnostics::nearest;
-use calibench_files::{Inputs, OutputFile, OutputFolder};
+use calibench_files::{Inputs, OutputFile};
 use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
 };
 use calibench_model::escape;
+use calibench_model::reframing::Reframing;
 use calibench_report::json::{CameraAnswer, ConversionAnswer, ConvertedCamera};
 use calibench_report::{Field, Hull, plain};
 use clap::Args;
@@ -26,21 +28,28 @@ use rayon::prelude::*;
 use super::context::Context;
 use super::output;
 use super::reading::Reading;
-use crate::deliver::{As, answer, stream};
+use crate::deliver::{As, answer};
 use crate::failure::Failure;
+use file::CamerasFile;
+use images::{InOtherImages, OtherImages};
 use said::Said;
+
+/// The help of `--size`, which is more here than for other commands.
+pub const SIZE: &str = "The same camera in images of this size, resampled; of a file that does not state the size of its images, that size";
 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Convert {
     /// A camera file of any known format, found by content
     file: PathBuf,
-    /// Convention or tool to convert to; `list conventions` lists them
-    #[arg(long, value_name = "CONVENTION")]
-    to: String,
+    /// Convention or tool to convert to; `list conventions` lists them [default, in other images: that of the file]
+    #[arg(long, value_name = "CONVENTION", required_unless_present_any = ["crop", "size", "scale", "binned", "turn"])]
+    to: Option<String>,
     /// Model of the tool, where it has several [default: the first that holds the camera exactly, or else the one that fits best]
-    #[arg(long, value_name = "MODEL")]
+    #[arg(long, value_name = "MODEL", requires = "to")]
     model: Option<String>,
+    #[command(flatten)]
+    images: OtherImages,
     /// Convert all cameras of the file: into one file where the format holds several, or else into the folder that -o names
     #[arg(long, conflicts_with_all = ["naive", "plot"])]
     all: bool,
@@ -63,7 +72,7 @@ pub struct Convert {
     #[arg(long)]
     accept: bool,
     /// Convert by `k_i = K_i / c^(2i)`, `p = P / c`, as the Canon paper's Table 2 does: wrong beyond first order, and said to be
-    #[arg(long, conflicts_with_all = ["radius", "rotation", "accept"])]
+    #[arg(long, requires = "to", conflicts_with_all = ["radius", "rotation", "accept"])]
     naive: bool,
     /// Draw the residuals over the frame, as PNG, SVG or PDF by the ending
     #[arg(long, value_name = "PICTURE")]
@@ -83,7 +92,8 @@ pub fn region(radius: Option<f64>) -> Region {
 }
 
 impl Convert {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.reading.allow_other_size();
         let inputs = inputs_of([&self.file]);
         let cameras_file = self.cameras_file(&inputs)?;
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
@@ -91,13 +101,13 @@ impl Convert {
         if !self.answered.json && self.in_pieces(&cameras_file, context.quiet)? {
             return Ok(());
         }
-        let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
+        let (read, sources) = self.sources()?;
         let many = sources.len() > 1;
         let one = |(index, source): (usize, NamedCamera)| {
             if many {
-                self.one_of_many(index, &source, many, context.quiet)
+                self.one_of_many(index, (read, &source), many, context.quiet)
             } else {
-                self.converted(&source, None, plot.as_ref(), context.quiet)
+                self.converted((read, &source), None, plot.as_ref(), context.quiet)
             }
         };
         // The first that is refused is named, on any number of threads.
@@ -108,7 +118,8 @@ impl Convert {
         said.say();
         let doubtful = results.iter().any(|answer| answer.doubtful);
         let Some(&Answer { format, .. }) = results.first() else { return Err(Failure::input("the file holds no camera")) };
-        let (mut cameras, found): (Vec<NamedCamera>, Vec<Found>) = results.into_iter().map(|answer| (answer.camera, answer.found)).unzip();
+        let (mut cameras, found): (Vec<NamedCamera>, Vec<(Found, Option<Reframing>)>) =
+            results.into_iter().map(|answer| (answer.camera, (answer.found, answer.by))).unzip();
         self.reading.open_points().written(format, &mut cameras);
         self.reading.warn_of_format(format);
         let mut words = Said::default();
@@ -123,13 +134,26 @@ impl Convert {
         if doubtful { Err(Failure::Doubt) } else { Ok(()) }
     }
 
-    fn answer(&self, format: &CameraFormat, cameras: &[NamedCamera], found: Vec<Found>) -> Result<(), Failure> {
+    /// The cameras to convert, and the format of their file.
+    fn sources(&self) -> Result<(&'static CameraFormat, Vec<NamedCamera>), Failure> {
+        if self.all {
+            return self.reading.all(&self.file);
+        }
+        let opened = self.reading.opened(&self.file)?;
+        Ok((opened.format(), vec![self.reading.one_of(&self.file, opened)?]))
+    }
+
+    fn answer(&self, format: &CameraFormat, cameras: &[NamedCamera], found: Vec<(Found, Option<Reframing>)>) -> Result<(), Failure> {
         answer(&ConversionAnswer {
             file: self.file.display().to_string(),
             to: format.name.to_owned(),
             unverified: self.reading.open_point(format),
             output: self.output.as_ref().map(|path| path.display().to_string()),
-            cameras: cameras.iter().zip(found).map(|(camera, found)| found.answer(camera, losses(format, camera))).collect(),
+            cameras: cameras
+                .iter()
+                .zip(found)
+                .map(|(camera, (found, by))| found.answer(camera, losses(format, camera)).in_other_images(by.as_ref()))
+                .collect(),
         })
     }
 
@@ -145,28 +169,57 @@ impl Convert {
     }
 
     /// One of a file's cameras, which is named by what is said of it.
-    fn one_of_many(&self, index: usize, source: &NamedCamera, many: bool, quiet: bool) -> Result<Answer, Failure> {
+    fn one_of_many(
+        &self,
+        index: usize,
+        (read, source): (&'static CameraFormat, &NamedCamera),
+        many: bool,
+        quiet: bool,
+    ) -> Result<Answer, Failure> {
         let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
-        self.converted(source, many.then_some(place.as_str()), None, quiet)
+        self.converted((read, source), many.then_some(place.as_str()), None, quiet)
     }
 
-    /// A camera in the new convention, and the format of its file.
-    fn converted(&self, source: &NamedCamera, label: Option<&str>, plot: Option<&OutputFile>, quiet: bool) -> Result<Answer, Failure> {
+    /// A camera in the new convention or in other images, and the format of its file, which was read from one of the format `read`.
+    fn converted(
+        &self,
+        (read, source): (&'static CameraFormat, &NamedCamera),
+        label: Option<&str>,
+        plot: Option<&OutputFile>,
+        quiet: bool,
+    ) -> Result<Answer, Failure> {
         let doubtful = source.implausible;
+        let whose = |failure| match (failure, label) {
+            (Failure::Input(text), Some(label)) => Failure::Input(format!("{}: {text}", escape::name(label))),
+            (failure, _) => failure,
+        };
+        let other = self.in_other_images(source).map_err(whose)?;
+        let by = other.as_ref().map(|other| other.by);
+        let mut said = Vec::new();
+        if let Some(InOtherImages { by, dropped, .. }) = &other {
+            said.extend((!quiet).then(|| (label.map(str::to_owned), format!("in other images: {by}"))));
+            said.extend(dropped.iter().map(|what| (None, format!("warning: dropped: {what}"))));
+        }
+        let source = other.as_ref().map_or(source, |other| &other.camera);
+        let Some(to) = &self.to else {
+            let Converted { camera, conversion, .. } = unchanged(source);
+            let format = self.kept_format(read, source, by)?;
+            plot.map_or(Ok(()), |plot| drawn(&conversion).write(plot))?;
+            return Ok(Answer { camera, format, said, doubtful, found: Found::Converted(Box::new(conversion), None), by });
+        };
         let order = self.reading.open_points().order();
         let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order, output: self.output.as_deref() };
-        let goal = goal(&self.to, &given).map_err(no_target)?;
+        let goal = goal(to, &given).map_err(no_target)?;
         if self.naive {
             let pitch_um = self.pitch.or(source.pitch_um);
             let (camera, found) = self.naive(source, pitch_um, plot, quiet)?;
             let camera = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), camera) };
-            return Ok(Answer { camera, format: goal.format, said: Vec::new(), doubtful, found });
+            return Ok(Answer { camera, format: goal.format, said, doubtful, found, by });
         }
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
         let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
         let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error, label))?;
-        let mut said = Vec::new();
         if !quiet {
             let model = model.map_or(String::new(), |model| format!("{model}: "));
             said.push((label.map(str::to_owned), format!("{model}{}", summary(&conversion))));
@@ -184,14 +237,16 @@ impl Convert {
         }
         let model = model.map(str::to_owned);
         let found = Found::Converted(Box::new(Conversion { residuals: Vec::new(), ..conversion }), model);
-        Ok(Answer { camera, format: goal.format, said, doubtful, found })
+        Ok(Answer { camera, format: goal.format, said, doubtful, found, by })
     }
 
     /// Why a camera is not converted, with its name where there are several.
     fn refused(&self, error: &ConversionError, label: Option<&str>) -> Failure {
         let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
         match error {
-            ConversionError::ModelNamed => Failure::input(format!("--to {} names the model already: no --model", self.to)),
+            ConversionError::ModelNamed => {
+                Failure::input(format!("--to {} names the model already: no --model", self.to.as_deref().unwrap_or_default()))
+            }
             // Of the command, and not of a camera.
             ConversionError::Fit(FitError::NoModels { .. } | FitError::UnknownModel { .. }) => Failure::input(error.to_string()),
             ConversionError::Convert(error) => Failure::input(format!("{name}{error}{}", flag(error))),
@@ -207,7 +262,7 @@ impl Convert {
         plot: Option<&OutputFile>,
         quiet: bool,
     ) -> Result<(Camera, Found), Failure> {
-        if self.to != "photogrammetric" {
+        if self.to.as_deref() != Some("photogrammetric") {
             return Err(Failure::input("--naive converts to photogrammetric only"));
         }
         let pitch = pitch_um.ok_or_else(|| Failure::input("--naive needs the pixel pitch: give it with --pitch UM"))?;
@@ -238,6 +293,8 @@ struct Answer {
     /// Whether no lens has the camera that was read.
     doubtful: bool,
     found: Found,
+    /// The other images that it is in.
+    by: Option<Reframing>,
 }
 
 /// How a camera was converted.
@@ -261,40 +318,6 @@ impl Found {
 /// What of a camera a format has no place for, as a warning.
 fn lost(format: &CameraFormat, camera: &NamedCamera) -> impl Iterator<Item = String> {
     losses(format, camera).into_iter().map(|what| format!("warning: lost: {}", escape::name(&what)))
-}
-
-/// Where converted cameras go.
-enum CamerasFile {
-    Standard,
-    File(OutputFile),
-    Folder(OutputFolder),
-}
-
-impl CamerasFile {
-    fn write(&self, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), Failure> {
-        match self {
-            Self::Folder(folder) => folder.replace(|folder| {
-                for (index, camera) in cameras.iter().enumerate() {
-                    let bytes = camera_bytes(format, std::slice::from_ref(camera)).map_err(io::Error::other)?;
-                    let name = format!("{}.{}", file_name(&camera.name, index), format.extension);
-                    folder.write(&name, |file| file.write_all(&bytes))?;
-                }
-                Ok(())
-            }),
-            Self::Standard | Self::File(_) if cameras.len() > 1 && !format.many => {
-                Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name)))
-            }
-            Self::Standard => {
-                let bytes = camera_bytes(format, cameras)?;
-                stream(|output| output.write_all(&bytes))
-            }
-            Self::File(file) => {
-                let bytes =
-                    camera_bytes(format, cameras).map_err(|error| Failure::input(format!("-o {}: {error}", file.path().display())))?;
-                Ok(file.write(|output| output.write_all(&bytes))?)
-            }
-        }
-    }
 }
 
 /// A target that is none, with the options that help.
@@ -322,13 +345,6 @@ fn flag(error: &ConvertError) -> &'static str {
         ConvertError::Fold { .. } => " (--radius PX restricts it)",
         _ => "",
     }
-}
-
-/// A file's name for a camera, without what would leave the folder.
-fn file_name(name: &str, index: usize) -> String {
-    let kept: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
-    let kept = kept.trim_matches('_');
-    if kept.is_empty() { format!("camera-{}", index + 1) } else { format!("{:03}-{kept}", index + 1) }
 }
 
 pub fn size_of(spread: &Spread) -> String {

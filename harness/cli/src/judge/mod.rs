@@ -1,13 +1,14 @@
 //! `calibench judge`: which operator, or which file of measured corners, and which camera model to trust.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
-use calibench_cameras::{inputs_of, published_camera};
+use calibench_cameras::{first_camera, inputs_of};
 use calibench_exchange::read_control;
 use calibench_images::Reading;
 use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, stated_sigma, usual_models};
+use calibench_model::NamedCamera;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
 use calibench_photographs::Chessboard;
@@ -23,6 +24,7 @@ use super::{output, reading};
 use crate::board::board_of;
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
+use crate::same_camera::for_images;
 
 mod files;
 mod page;
@@ -75,6 +77,9 @@ pub struct Judge {
     /// A camera file in use: does it still hold on these photographs or points? Exit code 0 if it holds, 1 if it has moved, 3 if they cannot tell
     #[arg(long, value_name = "FILE", conflicts_with = "published")]
     camera: Option<PathBuf>,
+    /// The camera of --camera or --published took the images, too, if they have the same aspect and another size: it is taken as it is in theirs
+    #[arg(long)]
+    same_camera: bool,
     /// Difference over the frame, px RMS, up to which --camera holds
     #[arg(long, value_name = "PX", default_value_t = 1.0, requires = "camera", value_parser = positive, allow_negative_numbers = true)]
     margin: f64,
@@ -103,8 +108,7 @@ impl Judge {
         let (material, doubts, reading) = self.material(context)?;
         let size = material.size;
         let published = self.camera.as_deref().or(self.published.as_deref());
-        let published =
-            published.map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input)).transpose()?;
+        let published = published.map(|path| self.known_camera(path, size)).transpose()?;
         let options = Options {
             models,
             pitch_um: self.pitch,
@@ -137,6 +141,12 @@ impl Judge {
             Some(StillHolds::Holds) if !doubts.is_empty() => Err(Failure::Doubt),
             Some(StillHolds::Holds) | None => Ok(()),
         }
+    }
+
+    /// The camera of a file, for images of `size`.
+    fn known_camera(&self, path: &Path, size: ImageSize) -> Result<NamedCamera, Failure> {
+        let named = first_camera(path, &path.display().to_string(), size).map_err(Failure::input)?;
+        for_images(path, &named, size, self.same_camera)
     }
 
     fn in_use(&self, trusted: &Trusted<'_>) -> Option<InUse> {

@@ -24,6 +24,9 @@ pub struct Eccentricity {
     /// For --eccentricity: size of the images, for camera files that do not state it
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "eccentricity")]
     size: Option<ImageSize>,
+    /// For --eccentricity: the camera of a file took the photographs, too, if they have the same aspect and another size: it is taken as it is in theirs
+    #[arg(long, requires = "eccentricity")]
+    same_camera: bool,
     /// For --eccentricity: exterior orientations, CSV with image,X0,Y0,Z0,omega_deg,phi_deg,kappa_deg
     #[arg(long, value_name = "CSV", requires = "eccentricity")]
     stations: Option<PathBuf>,
@@ -38,13 +41,13 @@ impl Eccentricity {
         self.stations.iter().chain(&self.control).chain(self.camera.iter().map(ImagesFile::path))
     }
 
-    /// Of each point; none where it was not asked for.
-    pub fn offsets(&self, points: &Points) -> Result<Vec<Offset>, Failure> {
+    /// Of each point; none where it was not asked for. `size` is that of an image's photograph, `None` of one that was not given.
+    pub fn offsets(&self, points: &Points, size: impl Fn(&str) -> Option<ImageSize>) -> Result<Vec<Offset>, Failure> {
         let (Some(discs), Some(stations), Some(control)) = (self.discs, &self.stations, &self.control) else {
             return Ok(Vec::new());
         };
         let survey = Survey::new(points.clone(), &read_control(control)?)?;
-        let cameras = CameraFiles::new(self.camera.clone(), self.size).of(&survey.images)?;
+        let cameras = CameraFiles::new(self.camera.clone(), self.size).of_images(&survey.images, self.same_camera, size)?;
         let poses = poses_of(&survey, &read_stations(stations)?)?;
         Ok(offsets(&survey, &cameras, &poses, discs)?)
     }

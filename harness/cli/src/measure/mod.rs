@@ -61,9 +61,10 @@ impl Measure {
         all_busy(&methods, kinds()).map_err(|gap| Failure::input(format!("-m: {gap}")))?;
         let nobodys = unmeasured(&methods, kinds());
         // What is wrong with the photographs' names is said before any is read.
-        photos_of(&points, &self.photos)?;
-        let offsets = self.eccentricity.offsets(&points)?;
+        let photos = photos_of(&points, &self.photos)?;
         let reader = self.read.reader(&self.photos)?;
+        let size = |image: &str| reader.sizes().get(photos[points.images().find(image)?]?).copied();
+        let offsets = self.eccentricity.offsets(&points, size)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let found = measure_points(&points, &reader, &methods, &|| progress.step())?;
         let rows = || rows(&points, &methods, &found, &offsets).chain(rows_of_nobody(&points, &nobodys));

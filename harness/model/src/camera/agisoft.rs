@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Brown, Pinhole};
-use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
-use crate::CornerPoint;
+use super::{CameraParameter, DerivativeBuffer, ImageSize, Reframe, Resampling, Turn, named};
+use crate::{CornerPoint, PixelPoint};
 
 /// Whose formulas and origins an [`Agisoft`] camera follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -189,6 +189,49 @@ impl Pinhole for Agisoft {
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         self.brown().is_surely_one_to_one(radius)
+    }
+}
+
+/// f, b1, b2 of `u = (f + b1) x + b2 y`, `v = f y` in resampled images.
+pub(super) fn resampled_affinity([f, b1, b2]: [f64; 3], by: &Resampling) -> [f64; 3] {
+    let [along, down] = by.scale;
+    [down * f, along * b1 + (along - down) * f, along * b2]
+}
+
+/// The same in turned images, where b2 is zero or they are turned by 180 degrees.
+pub(super) fn turned_affinity([f, b1, b2]: [f64; 3], turn: Turn) -> [f64; 3] {
+    if turn.swaps_axes() { [f + b1, 0.0 - b1, b2] } else { [f, b1, b2] }
+}
+
+impl Agisoft {
+    /// The camera of images of `size` whose principal point is at `at`.
+    fn centred(&self, at: PixelPoint, size: ImageSize, [f, b1, b2]: [f64; 3]) -> Self {
+        let (corner, half) = (at.to_corner(), |length: u32| if self.is_old() { 0.0 } else { f64::from(length) / 2.0 });
+        Self { size, f, b1, b2, cx: corner.x - half(size.width), cy: corner.y - half(size.height), ..*self }
+    }
+}
+
+impl Reframe for Agisoft {
+    fn resampled(&self, by: &Resampling) -> Self {
+        let affinity = resampled_affinity([self.f, self.b1, self.b2], by);
+        self.centred(by.point(self.affinity().shift), by.size, affinity)
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        (turn.swaps_axes() && self.b2 != 0.0).then_some("b2")
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let [first, second, p3, p4] = self.p;
+        let (first, second) = if self.is_old() {
+            let [second, first] = turn.vector([second, first]);
+            (first, second)
+        } else {
+            turn.vector([first, second]).into()
+        };
+        let affinity = turned_affinity([self.f, self.b1, self.b2], turn);
+        let turned = self.centred(turn.point(self.size, self.affinity().shift), turn.size(self.size), affinity);
+        Self { p: [first, second, p3, p4], ..turned }
     }
 }
 

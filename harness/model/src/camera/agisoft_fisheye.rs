@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::wide_angle::{self, Axial, Focal, Plane};
-use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, agisoft, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, Reframe, Resampling, Turn, agisoft, named};
 use crate::{CornerPoint, PixelPoint};
 
 /// How Metashape's fisheye pictures an angle before it is distorted.
@@ -169,6 +169,31 @@ impl CameraModel for AgisoftFisheye {
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
         // The direction in the image is one in the plane before the affinity, for all but a shear.
         wide_angle::fold_towards(&Normalised(*self), angle).map(|at| self.pixel(at))
+    }
+}
+
+impl AgisoftFisheye {
+    /// The camera of images of `size` whose principal point is at `at`.
+    fn centred(&self, at: PixelPoint, size: ImageSize, [f, b1, b2]: [f64; 3]) -> Self {
+        let (corner, half) = (at.to_corner(), |length: u32| f64::from(length) / 2.0);
+        Self { size, f, b1, b2, cx: corner.x - half(size.width), cy: corner.y - half(size.height), ..*self }
+    }
+}
+
+impl Reframe for AgisoftFisheye {
+    fn resampled(&self, by: &Resampling) -> Self {
+        let affinity = agisoft::resampled_affinity([self.f, self.b1, self.b2], by);
+        self.centred(by.point(self.principal_point()), by.size, affinity)
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        (turn.swaps_axes() && self.b2 != 0.0).then_some("b2")
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let affinity = agisoft::turned_affinity([self.f, self.b1, self.b2], turn);
+        let turned = self.centred(turn.point(self.size, self.principal_point()), turn.size(self.size), affinity);
+        Self { p: turn.vector(self.p), ..turned }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{CameraModel, Ray, Slopes};
+use super::{CameraModel, ImageSize, Ray, Reframe, Resampling, Slopes, Turn};
 use crate::PixelPoint;
 
 /// Places along each side of the frame.
@@ -22,11 +22,12 @@ pub enum Shape {
 /// Checks `camera`, which has no fold inside its frame and whose corners are distorted as `shape` says.
 ///
 /// Parameters come back through `with_parameters`; every pixel of a grid over the frame, with its corners, comes back from its ray to 1e-9 px; rays of any
-/// length give the same pixel; derivatives by the ray and by every parameter agree with differences; no fold is reported; places that are none are refused.
+/// length give the same pixel; derivatives by the ray and by every parameter agree with differences; no fold is reported; places that are none are refused; the
+/// same camera in resampled and turned images pictures every ray where the image of it has come to, to 1e-9 px.
 ///
 /// # Panics
 /// With what the model did wrong.
-pub fn check<C: CameraModel + Debug + PartialEq>(camera: &C, shape: Shape) {
+pub fn check<C: CameraModel + Reframe + Debug + PartialEq>(camera: &C, shape: Shape) {
     let values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value).collect();
     assert_eq!(&camera.with_parameters(&values), camera, "with_parameters of its own parameters");
     assert_eq!(super::fold(camera), None, "a fold in the frame of {camera:?}");
@@ -43,6 +44,42 @@ pub fn check<C: CameraModel + Debug + PartialEq>(camera: &C, shape: Shape) {
         by_parameters(camera, ray, &values);
     }
     refusals(camera);
+    reframed(camera);
+}
+
+/// Of images of a frame: smaller and larger ones, by factors that leave a remainder too, parts of them, and columns and rows by factors of their own.
+fn resamplings(from: ImageSize) -> [Resampling; 5] {
+    let ImageSize { width, height } = from;
+    let by = |offset, scale, [width, height]: [u32; 2]| Resampling { from, offset, scale, size: ImageSize { width, height } };
+    [
+        by([0.0; 2], [0.5; 2], [width / 2, height / 2]),
+        by([0.0; 2], [2.5; 2], [5 * width / 2, 5 * height / 2]),
+        by([37.0, 11.0], [1.0; 2], [width - 100, height - 60]),
+        by([0.0, 64.0], [2.0 / 3.0; 2], [2 * width / 3, 2 * (height - 128) / 3]),
+        by([5.0, 0.0], [0.8, 1.3], [4 * (width - 5) / 5, 13 * height / 10]),
+    ]
+}
+
+/// Resampled and turned images, where the model says that it holds them.
+fn reframed(camera: &(impl CameraModel + Reframe + Debug)) {
+    let size = camera.size();
+    let images = |made: &dyn CameraModel, ray: &dyn Fn(Ray) -> Ray, at: &dyn Fn(PixelPoint) -> PixelPoint, what: &dyn Debug| {
+        for point in places(camera) {
+            let found = made.project(ray(unproject(camera, point))).unwrap_or_else(|error| panic!("{what:?}, {point:?}: {error}"));
+            let off = found.distance(at(point));
+            assert!(off < 1e-9, "{what:?}: {point:?} of {camera:?} is {off:e} px off");
+        }
+    };
+    for by in resamplings(size).iter().filter(|by| by.is_isotropic() || camera.has_two_scales()) {
+        let made = camera.resampled(by);
+        assert_eq!(made.size(), by.size, "{by:?}");
+        images(&made, &|ray| ray, &|point| by.point(point), by);
+    }
+    for turn in Turn::ALL.into_iter().filter(|turn| camera.without_place(*turn).is_none()) {
+        let made = camera.turned(turn);
+        assert_eq!(made.size(), turn.size(size), "{turn:?}");
+        images(&made, &|ray| turn.ray(ray), &|point| turn.point(size, point), &turn);
+    }
 }
 
 /// Position of the last pixel's centre.

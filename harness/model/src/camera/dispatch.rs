@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
-    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, Slopes, agisoft,
-    agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye,
-    rad_tan_prism_fisheye, tool_conventions,
+    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, Reframe, Resampling, Slopes,
+    Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d,
+    prism_fisheye, rad_tan_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;
 
@@ -164,6 +164,24 @@ impl CameraModel for Camera {
 
     fn has_surely_no_fold(&self) -> bool {
         each!(self, camera => camera.has_surely_no_fold())
+    }
+}
+
+impl Reframe for Camera {
+    fn has_two_scales(&self) -> bool {
+        each!(self, camera => camera.has_two_scales())
+    }
+
+    fn resampled(&self, by: &Resampling) -> Self {
+        each!(self, camera => camera.resampled(by).into())
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        each!(self, camera => camera.without_place(turn))
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        each!(self, camera => camera.turned(turn).into())
     }
 }
 

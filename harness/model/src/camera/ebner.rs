@@ -6,7 +6,7 @@ use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Ver
 use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
 use super::plane_map::{PlaneMap, is_one_to_one};
-use super::{CameraModel, CameraParameter, DerivativeBuffer, Photogrammetric, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, Photogrammetric, Reframe, Resampling, Turn, named};
 
 /// [`Photogrammetric`] with Ebner's twelve additional parameters. Direction: **measured to ideal**; mm; y points up.
 ///
@@ -164,6 +164,34 @@ impl Ebner {
 }
 
 measured_camera!(Ebner);
+
+impl Reframe for Ebner {
+    fn has_two_scales(&self) -> bool {
+        false
+    }
+
+    fn resampled(&self, by: &Resampling) -> Self {
+        Self { base: self.base.resampled(by), ..*self }
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        self.base.without_place(turn)
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let base = self.base.turned(turn);
+        // What the base's ideal coordinates were multiplied by.
+        let s = base.c / self.base.c;
+        let [e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12] = self.parameters.map(|e| s * e);
+        let parameters = match turn {
+            Turn::Quarter => [-e1, -e2, e4, -e3, e6, -e5, e8, e7, -e10, -e9, e12, -e11],
+            // Terms of even degree change their sign.
+            Turn::Half => [e1, e2, -e3, -e4, -e5, -e6, e7, e8, e9, e10, -e11, -e12],
+            Turn::ThreeQuarters => [-e1, -e2, -e4, e3, -e6, e5, e8, e7, -e10, -e9, -e12, e11],
+        };
+        Self { base, parameters: parameters.map(|e| 0.0 + e), ..*self }
+    }
+}
 
 #[cfg(test)]
 mod tests {

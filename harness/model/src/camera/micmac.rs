@@ -6,7 +6,7 @@ use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Ver
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
 use super::plane_map::is_one_to_one;
-use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, Reframe, Resampling, Turn, named};
 use crate::PixelPoint;
 
 /// MicMac's camera with `ModRad` or `ModPhgrStd` (Fraser). Direction: **ideal to image** (`eConvApero_DistM2C`); y points down; px throughout.
@@ -126,6 +126,31 @@ impl Pinhole for MicMac {
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         self.offset == [0.0; 2] && is_one_to_one(radius * self.f, &self.k, &self.p, self.b[0].abs() + self.b[1].abs())
+    }
+}
+
+impl Reframe for MicMac {
+    fn has_two_scales(&self) -> bool {
+        false
+    }
+
+    fn resampled(&self, by: &Resampling) -> Self {
+        let (at, s) = (by.point(PixelPoint::new(self.pp[0], self.pp[1])), by.scale[0]);
+        let mut k = self.k;
+        for (k, power) in k.iter_mut().zip(1..) {
+            *k /= s.powi(2 * power);
+        }
+        let (offset, p) = (self.offset.map(|e| s * e), self.p.map(|p| p / s));
+        Self { size: by.size, f: s * self.f, pp: [at.x, at.y], offset, k, p, ..*self }
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        (turn.swaps_axes() && self.b != [0.0; 2]).then_some("b1 or b2")
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let at = turn.point(self.size, PixelPoint::new(self.pp[0], self.pp[1]));
+        Self { size: turn.size(self.size), pp: [at.x, at.y], offset: turn.vector(self.offset), p: turn.vector(self.p), ..*self }
     }
 }
 

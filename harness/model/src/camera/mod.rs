@@ -29,6 +29,7 @@ mod plausible;
 pub mod prism_fisheye;
 pub mod rad_tan_prism_fisheye;
 mod ray;
+mod reframe;
 pub mod splined;
 pub mod tool_conventions;
 mod wide_angle;
@@ -61,6 +62,7 @@ pub use plausible::{Implausible, implausible};
 pub use prism_fisheye::PrismFisheye;
 pub use rad_tan_prism_fisheye::RadTanPrismFisheye;
 pub use ray::Ray;
+pub use reframe::{Reframe, Resampling, Turn};
 pub use splined::Splined;
 pub use without_ray::without_ray;
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::wide_angle::{Axial, Focal, Plane, axial_camera};
-use super::{ImageSize, double_sphere};
+use super::{ImageSize, Turn, double_sphere};
 
 /// Mei's camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
 ///
@@ -82,6 +82,12 @@ impl Axial for Omni {
 
     fn plane_parameters(&self) -> &'static [usize] {
         &[0, 1, 2, 3]
+    }
+
+    fn with_turned_plane(self, turn: Turn) -> Self {
+        // p2 goes with x.
+        let [p2, p1] = turn.vector([self.p[1], self.p[0]]);
+        Self { p: [p1, p2], ..self }
     }
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::fold::corners;
 use super::plane_map::{first_fold, stays_above};
-use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, Reframe, Resampling, Turn, named};
 use crate::PixelPoint;
 
 /// OpenCV's fisheye camera, of Kannala and Brandt. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
@@ -197,6 +197,22 @@ impl CameraModel for OpenCvFisheye {
         };
         let farthest = corners(self.size).map(distorted).into_iter().fold(0.0, f64::max);
         self.reaching(farthest).is_some()
+    }
+}
+
+impl Reframe for OpenCvFisheye {
+    fn resampled(&self, by: &Resampling) -> Self {
+        let (at, [fx, fy]) = (by.point(PixelPoint::new(self.cx, self.cy)), by.lengths([self.fx, self.fy]));
+        Self { size: by.size, fx, fy, cx: at.x, cy: at.y, ..*self }
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        (turn.swaps_axes() && self.skew != 0.0).then_some("skew")
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let (at, [fx, fy]) = (turn.point(self.size, PixelPoint::new(self.cx, self.cy)), turn.along([self.fx, self.fy]));
+        Self { size: turn.size(self.size), fx, fy, cx: at.x, cy: at.y, ..*self }
     }
 }
 

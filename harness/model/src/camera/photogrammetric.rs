@@ -6,7 +6,8 @@ use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Ver
 use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
 use super::plane_map::{PlaneMap, is_one_to_one, radial_start};
-use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, Reframe, Resampling, Turn, named};
+use crate::{Frame, SensorPoint};
 
 /// Interior orientation in mm, y up, from the centre of the frame. Direction: **measured to ideal**.
 ///
@@ -136,6 +137,37 @@ impl Photogrammetric {
 }
 
 measured_camera!(Photogrammetric);
+
+impl Reframe for Photogrammetric {
+    fn has_two_scales(&self) -> bool {
+        false
+    }
+
+    /// The pixels become larger or smaller, and mm stay what they are; the principal point is counted from the middle of the new frame.
+    fn resampled(&self, by: &Resampling) -> Self {
+        let pitch_um = self.pitch_um / by.scale[0];
+        let frame = |size: ImageSize, pitch_um| Frame::new(size.width, size.height, pitch_um);
+        // A camera whose pixels have no size pictures nothing, in any images.
+        let (Ok(before), Ok(after)) = (frame(self.size, self.pitch_um), frame(by.size, pitch_um)) else {
+            return Self { size: by.size, pitch_um, ..*self };
+        };
+        let at = after.to_sensor(by.point(before.to_pixel(SensorPoint { x: self.x0, y: self.y0 })));
+        Self { size: by.size, pitch_um, x0: at.x, y0: at.y, ..*self }
+    }
+
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        (turn.swaps_axes() && self.b[1] != 0.0).then_some("b2")
+    }
+
+    /// b1 corrects x: where y becomes x, all ideal coordinates are divided by 1 - b1 instead, which are the same rays.
+    fn turned(&self, turn: Turn) -> Self {
+        let ([x0, y0], p) = (turn.vector_up([self.x0, self.y0]), turn.vector_up(self.p));
+        let s = if turn.swaps_axes() { 1.0 / (1.0 - self.b[0]) } else { 1.0 };
+        let b1 = if turn.swaps_axes() { 1.0 - s } else { self.b[0] };
+        let (k, p) = (self.k.map(|k| s * k), p.map(|p| s * p));
+        Self { size: turn.size(self.size), c: s * self.c, x0, y0, k, p, b: [b1, self.b[1]], ..*self }
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Brown, Pinhole};
-use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
-use crate::CornerPoint;
+use super::{CameraParameter, DerivativeBuffer, ImageSize, Reframe, Resampling, Turn, named};
+use crate::{CornerPoint, PixelPoint};
 
 /// Pix4D's perspective camera. Direction: **ideal to distorted**; y points down as in its camera matrix; the outer corner of the first pixel is
 /// (0, 0); normalised by the focal length.
@@ -61,6 +61,12 @@ impl Pix4d {
         let [first, second] = if self.order == TangentialOrder::OpenCv { [self.t[1], self.t[0]] } else { self.t };
         Brown { k: [r1, r2, r3, 0.0], p: [first, second, 0.0, 0.0] }
     }
+
+    /// The camera of images of `size` whose principal point is at `at`, of pixels that are `scale` times as many along a mm.
+    fn centred(&self, at: PixelPoint, size: ImageSize, scale: f64) -> Self {
+        let (corner, pitch_mm) = (at.to_corner(), self.sensor_width_mm / f64::from(self.size.width) / scale);
+        Self { size, sensor_width_mm: pitch_mm * f64::from(size.width), f_px: scale * self.f_px, px: corner.x, py: corner.y, ..*self }
+    }
 }
 
 impl Pinhole for Pix4d {
@@ -93,6 +99,26 @@ impl Pinhole for Pix4d {
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         self.brown().is_surely_one_to_one(radius)
+    }
+}
+
+impl Reframe for Pix4d {
+    fn has_two_scales(&self) -> bool {
+        false
+    }
+
+    fn resampled(&self, by: &Resampling) -> Self {
+        self.centred(by.point(self.affinity().shift), by.size, by.scale[0])
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let t = if self.order == TangentialOrder::OpenCv {
+            let [second, first] = turn.vector([self.t[1], self.t[0]]);
+            [first, second]
+        } else {
+            turn.vector(self.t)
+        };
+        Self { t, ..self.centred(turn.point(self.size, self.affinity().shift), turn.size(self.size), 1.0) }
     }
 }
 

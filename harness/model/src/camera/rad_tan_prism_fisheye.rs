@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::plane_map::first_fold;
 use super::wide_angle::{Axial, Focal, Plane, axial_camera};
-use super::{ImageSize, opencv_fisheye};
+use super::{ImageSize, Turn, opencv_fisheye};
 
 /// A fisheye with six radial coefficients, then decentring and thin prism. Direction: **ideal to distorted**; y points down; the centre of the first pixel is
 /// (0, 0).
@@ -116,6 +116,12 @@ impl Axial for RadTanPrismFisheye {
 
     fn pictures(&self, theta: f64) -> bool {
         (theta < std::f64::consts::PI && self.is_surely_rising(theta)) || theta < self.end()
+    }
+
+    fn with_turned_plane(self, turn: Turn) -> Self {
+        let [s0, s1, s2, s3] = self.s;
+        let ([s0, s2], [s1, s3]) = (turn.vector([s0, s2]), turn.vector([s1, s3]));
+        Self { p: turn.vector(self.p), s: [s0, s1, s2, s3], ..self }
     }
 }
 

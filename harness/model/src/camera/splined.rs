@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::newton::{self, ValueAndDerivatives, determinant};
 use super::plane_map::{PlaneMap, first_fold, is_on_branch};
-use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, Reframe, Resampling, Turn, named};
 use crate::PixelPoint;
 
 /// mrcal's `LENSMODEL_SPLINED_STEREOGRAPHIC`. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
@@ -204,6 +204,34 @@ impl CameraModel for Splined {
         let leaves = (1..=PLACES).map(|place| reach * place as f64 / PLACES as f64).find(|&s| !self.is_in_frame(image(s)));
         let fold = first_fold(|s| determinant(self.map([s * cos, s * sin]).1), leaves.unwrap_or(reach), PLACES)?;
         Some(image(fold))
+    }
+}
+
+impl Reframe for Splined {
+    fn resampled(&self, by: &Resampling) -> Self {
+        let [fx, fy, cx, cy] = self.core;
+        let (at, [fx, fy]) = (by.point(PixelPoint::new(cx, cy)), by.lengths([fx, fy]));
+        Self { size: by.size, core: [fx, fy, at.x, at.y], ..self.clone() }
+    }
+
+    /// The grid turns with the images: of rows that become columns the field of view is another one, and their spacing the same.
+    fn turned(&self, turn: Turn) -> Self {
+        let [fx, fy, cx, cy] = self.core;
+        let (at, [fx, fy]) = (turn.point(self.size, PixelPoint::new(cx, cy)), turn.along([fx, fy]));
+        let (columns, rows) = if turn.swaps_axes() { (self.rows, self.columns) } else { (self.columns, self.rows) };
+        let spanned = (columns - self.order) as f64 / (4.0 * self.per_u());
+        let fov_x_deg = if turn.swaps_axes() { (4.0 * spanned.atan()).to_degrees() } else { self.fov_x_deg };
+        let before = |index: usize| {
+            let (column, row) = (index % columns, index / columns);
+            let (column, row) = match turn {
+                Turn::Quarter => (row, self.rows - 1 - column),
+                Turn::Half => (self.columns - 1 - column, self.rows - 1 - row),
+                Turn::ThreeQuarters => (self.columns - 1 - row, column),
+            };
+            turn.vector(self.control[row * self.columns + column])
+        };
+        let control = (0..self.control.len()).map(before).collect();
+        Self { size: turn.size(self.size), core: [fx, fy, at.x, at.y], columns, rows, fov_x_deg, control, ..self.clone() }
     }
 }
 

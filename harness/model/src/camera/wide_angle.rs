@@ -2,7 +2,7 @@
 
 use super::newton::{ValueAndDerivatives, determinant};
 use super::plane_map::{PlaneMap, first_fold, invert, is_on_branch};
-use super::{CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, Turn, named};
 use crate::PixelPoint;
 
 /// Halvings that find an angle; Newton's steps end them sooner.
@@ -41,6 +41,14 @@ pub(super) trait Axial {
     /// Whether the radius rises up to `theta`; models whose end is dear to find answer sooner.
     fn pictures(&self, theta: f64) -> bool {
         theta < self.end()
+    }
+    /// The terms of the plane in turned axes; what depends on the angle alone stays.
+    fn with_turned_plane(self, turn: Turn) -> Self
+    where
+        Self: Sized,
+    {
+        let _ = turn;
+        self
     }
 }
 
@@ -217,7 +225,7 @@ pub(super) fn fold_towards(camera: &impl Axial, angle: f64) -> Option<PixelPoint
     fold.or(widest).map(|s| pixel(&focal, plane.map([s * cos, s * sin]).0))
 }
 
-/// The seven methods of [`super::CameraModel`] for a camera around an axis, whose parameters are `lens` after fx, fy, cx, cy.
+/// The methods of [`super::CameraModel`] and [`super::Reframe`] for a camera around an axis, whose parameters are `lens` after fx, fy, cx, cy.
 macro_rules! axial_camera {
     ($model:ty, $names:expr) => {
         impl $crate::camera::CameraModel for $model {
@@ -252,6 +260,18 @@ macro_rules! axial_camera {
 
             fn fold_towards(&self, angle: f64) -> Option<$crate::PixelPoint> {
                 $crate::camera::wide_angle::fold_towards(self, angle)
+            }
+        }
+
+        impl $crate::camera::Reframe for $model {
+            fn resampled(&self, by: &$crate::camera::Resampling) -> Self {
+                let (at, [fx, fy]) = (by.point($crate::PixelPoint::new(self.cx, self.cy)), by.lengths([self.fx, self.fy]));
+                Self { size: by.size, fx, fy, cx: at.x, cy: at.y, ..*self }
+            }
+
+            fn turned(&self, turn: $crate::camera::Turn) -> Self {
+                let (at, [fx, fy]) = (turn.point(self.size, $crate::PixelPoint::new(self.cx, self.cy)), turn.along([self.fx, self.fy]));
+                Self { size: turn.size(self.size), fx, fy, cx: at.x, cy: at.y, ..self.with_turned_plane(turn) }
             }
         }
     };

@@ -1,11 +1,12 @@
 //! What became of cameras in another convention, as JSON.
 
-use calibench_model::camera::Fold;
+use calibench_model::camera::{Fold, Turn};
 use calibench_model::convert::{Conversion, Method, Region, Spread, Verdict};
+use calibench_model::reframing::Reframing;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Answer, CameraAnswer, Sizes};
+use super::{Answer, CameraAnswer, Size, Sizes};
 
 /// Cameras in another convention.
 #[derive(Serialize, JsonSchema)]
@@ -46,11 +47,41 @@ pub struct ConvertedCamera {
     fold_px: Option<f64>,
     /// What of the camera the format has no place for.
     lost: Vec<String>,
+    /// The other images that the camera was asked for in; null: its own.
+    images: Option<Images>,
     /// The camera.
     camera: CameraAnswer,
 }
 
+/// Images that are made of a camera's own.
+#[derive(Serialize, JsonSchema)]
+struct Images {
+    /// Size of its own.
+    of: Size,
+    /// Columns and rows that are cut off before the first, px.
+    offset: [f64; 2],
+    /// New pixels for an old one, along rows and along columns.
+    scale: [f64; 2],
+    /// Then turned clockwise, degrees: 0, 90, 180 or 270.
+    turn_deg: u16,
+    /// Size of the new ones.
+    size: Size,
+}
+
 impl ConvertedCamera {
+    /// The same in other images.
+    #[must_use]
+    pub fn in_other_images(self, by: Option<&Reframing>) -> Self {
+        let images = |by: &Reframing| Images {
+            of: by.resampling.from.into(),
+            offset: by.resampling.offset,
+            scale: by.resampling.scale,
+            turn_deg: by.turn.map_or(0, Turn::degrees),
+            size: by.size().into(),
+        };
+        Self { images: by.map(images), ..self }
+    }
+
     /// Of a conversion.
     pub fn new(conversion: &Conversion, model: Option<String>, fold: Option<Fold>, lost: Vec<String>, camera: CameraAnswer) -> Self {
         Self {
@@ -69,6 +100,7 @@ impl ConvertedCamera {
             rotation_deg: conversion.rotation.angle().to_degrees(),
             fold_px: fold.map(|fold| fold.radius_px),
             lost,
+            images: None,
             camera,
         }
     }
@@ -85,6 +117,7 @@ impl ConvertedCamera {
             rotation_deg,
             fold_px,
             lost,
+            images: None,
             camera,
         }
     }

@@ -13,7 +13,7 @@ use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Ver
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
 use super::plane_map::{is_one_to_one, is_quotient_one_to_one};
-use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, Reframe, Resampling, Turn, named};
 use crate::PixelPoint;
 
 pub use jacobian::{CameraFromWorld, Jacobian};
@@ -194,6 +194,29 @@ impl Pinhole for OpenCv {
             _ => is_quotient_one_to_one(radius, [above, below], &d[2..4], prism),
         };
         !self.is_tilted() && by_polynomials()
+    }
+}
+
+impl Reframe for OpenCv {
+    fn resampled(&self, by: &Resampling) -> Self {
+        let (at, [fx, fy]) = (by.point(PixelPoint::new(self.cx, self.cy)), by.lengths([self.fx, self.fy]));
+        Self { size: by.size, fx, fy, cx: at.x, cy: at.y, ..*self }
+    }
+
+    /// Tilts about both axes, one after the other, are in the other order none of two angles.
+    fn without_place(&self, turn: Turn) -> Option<&'static str> {
+        let is_tilted_twice = self.distortion[12] != 0.0 && self.distortion[13] != 0.0;
+        (turn.swaps_axes() && is_tilted_twice).then_some("tx and ty together")
+    }
+
+    fn turned(&self, turn: Turn) -> Self {
+        let (at, [fx, fy]) = (turn.point(self.size, PixelPoint::new(self.cx, self.cy)), turn.along([self.fx, self.fy]));
+        let [k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4, tx, ty] = self.distortion;
+        // p2 goes with x, s1 and s2 do, and s3 and s4 go with y.
+        let ([p2, p1], [tx, ty]) = (turn.vector([p2, p1]), turn.vector([tx, ty]));
+        let ([s1, s3], [s2, s4]) = (turn.vector([s1, s3]), turn.vector([s2, s4]));
+        let distortion = [k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4, tx, ty];
+        Self { size: turn.size(self.size), fx, fy, cx: at.x, cy: at.y, distortion, ..*self }
     }
 }
 

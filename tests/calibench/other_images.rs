@@ -1,0 +1,189 @@
+//! The same camera in other images: resampled, a part of them, turned; and commands that are given images of another size than their camera's.
+
+use std::path::Path;
+
+use calibench_cameras::read_camera;
+use calibench_model::PixelPoint;
+use calibench_model::camera::{Camera, CameraModel, Ray};
+
+use crate::cameras::{CAMERA, folder, good};
+use crate::judge::{board, judge};
+use crate::project::{run, stderr, stdout};
+
+fn camera(path: &Path) -> Camera {
+    read_camera(path).unwrap_or_else(|error| panic!("{error}")).cameras[0].camera
+}
+
+/// A camera of other images pictures rays, turned with its axes, where the images' places come to.
+fn agrees(before: &Camera, after: &Camera, ray: impl Fn(Ray) -> Ray, place: impl Fn(PixelPoint) -> PixelPoint) {
+    let size = before.size();
+    for (x, y) in (0..=8).flat_map(|x| (0..=6).map(move |y| (f64::from(x) / 8.0, f64::from(y) / 6.0))) {
+        let at = PixelPoint::new(x * f64::from(size.width - 1), y * f64::from(size.height - 1));
+        let found = after.project(ray(before.unproject(at).unwrap())).unwrap();
+        assert!(found.distance(place(at)) < 1e-9, "{at:?}: {found:?}, expected {:?}", place(at));
+    }
+}
+
+#[test]
+fn a_camera_is_resampled_cut_and_turned_with_half_pixels_where_they_belong() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let before = camera(&at("camera.yml"));
+    let same = |ray: Ray| ray;
+    let text = good(folder.path(), &["convert", "camera.yml", "--size", "800x600", "-o", "half.yml"]);
+    assert!(text.contains("in other images: 1600 x 1200 px, times 1/2: 800 x 600 px"), "{text}");
+    let halved = |p: PixelPoint| PixelPoint::new(0.5 * (p.x + 0.5) - 0.5, 0.5 * (p.y + 0.5) - 0.5);
+    agrees(&before, &camera(&at("half.yml")), same, halved);
+    // cx is (810 + 0.5) / 2 - 0.5.
+    assert!(std::fs::read_to_string(at("half.yml")).unwrap().contains("4.0475"));
+    good(folder.path(), &["convert", "half.yml", "--scale", "2", "-o", "back.xml"]);
+    agrees(&before, &camera(&at("back.xml")), same, same_place);
+    good(folder.path(), &["convert", "camera.yml", "--binned", "3", "--to", "metashape", "-o", "third.xml"]);
+    agrees(&before, &camera(&at("third.xml")), same, |p| PixelPoint::new((p.x + 0.5) / 3.0 - 0.5, (p.y + 0.5) / 3.0 - 0.5));
+    // A video mode: 16 to 9 out of the middle, resampled.
+    let mode = ["convert", "camera.yml", "--crop", "0,150,1600,900", "--size", "1280x720", "--to", "colmap", "-o", "cameras.txt"];
+    good(folder.path(), &mode);
+    agrees(&before, &camera(&at("cameras.txt")), same, |p| PixelPoint::new(0.8 * (p.x + 0.5) - 0.5, 0.8 * (p.y - 149.5) - 0.5));
+    // Portrait: the left side is up, and what pointed right points down.
+    let said = good(folder.path(), &["convert", "camera.yml", "--turn", "90", "-o", "upright.yml"]);
+    assert!(said.contains("turned by 90 degrees clockwise: 1200 x 1600 px"), "{said}");
+    let turned = |ray: Ray| Ray { x: ray.y, y: -ray.x, z: ray.z };
+    agrees(&before, &camera(&at("upright.yml")), turned, |p| PixelPoint::new(1199.0 - p.y, p.x));
+    good(folder.path(), &["convert", "upright.yml", "--turn", "270", "-o", "round.yml"]);
+    agrees(&before, &camera(&at("round.yml")), same, same_place);
+}
+
+fn same_place(at: PixelPoint) -> PixelPoint {
+    at
+}
+
+#[test]
+fn an_answer_says_what_images_it_is_of() {
+    let folder = folder();
+    let text =
+        stdout(&run(folder.path(), &["convert", "camera.yml", "--crop", "100,0,1000,900", "--binned", "2", "--turn", "270", "--json"]));
+    let found: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let images = &found["cameras"][0]["images"];
+    let size = |value: &serde_json::Value| [value["width"].as_u64().unwrap(), value["height"].as_u64().unwrap()];
+    assert_eq!((size(&images["of"]), size(&images["size"])), ([1600, 1200], [450, 500]), "{text}");
+    assert!(
+        images["offset"] == serde_json::json!([100.0, 0.0])
+            && images["scale"] == serde_json::json!([0.5, 0.5])
+            && images["turn_deg"] == 270
+    );
+}
+
+#[test]
+fn a_file_without_a_size_takes_it_and_no_other() {
+    let folder = folder();
+    let bare: String = CAMERA.lines().filter(|line| !line.starts_with("image_")).map(|line| format!("{line}\n")).collect();
+    std::fs::write(folder.path().join("bare.yml"), bare).unwrap();
+    let at = |name: &str| folder.path().join(name);
+    good(folder.path(), &["convert", "bare.yml", "--size", "1600x1200", "--to", "opencv", "-o", "stated.yml"]);
+    assert_eq!(camera(&at("stated.yml")), camera(&at("camera.yml")));
+    good(folder.path(), &["convert", "bare.yml", "--size", "1600x1200", "--crop", "0,0,800,600", "--scale", "2", "-o", "part.yml"]);
+    good(folder.path(), &["convert", "camera.yml", "--crop", "0,0,800,600", "--size", "1600x1200", "-o", "same.yml"]);
+    assert_eq!(camera(&at("part.yml")), camera(&at("same.yml")));
+}
+
+#[test]
+fn what_makes_no_camera_is_refused_by_name() {
+    let folder = folder();
+    let with_skew = ["convert", "camera.yml", "--to", "metashape", "-o", "m.xml"];
+    good(folder.path(), &with_skew);
+    let skewed = std::fs::read_to_string(folder.path().join("m.xml")).unwrap().replace("<k1>", "<b2>0.5</b2>\n  <k1>");
+    std::fs::write(folder.path().join("skewed.xml"), skewed).unwrap();
+    good(folder.path(), &["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "4", "-o", "p.toml"]);
+    for (arguments, expected) in [
+        (
+            &["convert", "camera.yml", "--crop", "0,400,1600,900"][..],
+            "--crop: the part of 1600 x 900 px from column 0 and row 400 on reaches beyond images of 1600 x 1200 px",
+        ),
+        (&["convert", "camera.yml", "--crop", "0,0,16"], "as in 0,150,1600,900"),
+        (&["convert", "camera.yml", "--binned", "1300"], "--binned: of 1600 x 1200 px that makes images of 1 x 0 px"),
+        (&["convert", "camera.yml", "--size", "800x600", "--scale", "0.5"], "expected one of --size, --scale, --binned"),
+        (&["convert", "camera.yml", "--scale", "0.5", "--binned", "2"], "cannot be used with"),
+        (&["convert", "camera.yml", "--turn", "45"], "expected 90, 180 or 270: degrees, clockwise"),
+        (&["convert", "camera.yml"], "--to <CONVENTION>"),
+        (&["convert", "camera.yml", "--size", "1600x1200"], "--to: expected, as the images stay what they are, 1600 x 1200 px"),
+        (&["convert", "skewed.xml", "--turn", "90"], "--turn: turned by 90 degrees: `metashape` has no place for what b2 becomes"),
+        (&["convert", "p.toml", "--size", "800x800"], "--size: columns times 1/2, rows times 2/3: `photogrammetric` has one focal length"),
+    ] {
+        let output = run(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stdout(&output));
+        assert!(stderr(&output).contains(expected), "{arguments:?}: expected {expected}\n{}", stderr(&output));
+    }
+    good(folder.path(), &["convert", "skewed.xml", "--turn", "180", "-o", "s.xml"]);
+    // With two focal lengths, squeezed images are no trouble.
+    good(folder.path(), &["convert", "camera.yml", "--size", "800x800", "-o", "squeezed.yml"]);
+}
+
+#[test]
+fn cameras_of_two_sizes_are_compared_where_they_are_said_to_be_one() {
+    let folder = folder();
+    good(folder.path(), &["convert", "camera.yml", "--size", "800x600", "-o", "half.yml"]);
+    let output = run(folder.path(), &["diff", "half.yml", "camera.yml"]);
+    let said = stderr(&output);
+    assert!(
+        output.status.code() == Some(2) && said.contains("differ in size: 800 x 600 px and 1600 x 1200 px; expected the same"),
+        "{said}"
+    );
+    assert!(said.contains("perhaps the same camera, its images times 1/2; --same-camera takes it so"), "{said}");
+    let text = good(folder.path(), &["diff", "half.yml", "camera.yml", "--same-camera"]);
+    let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!(rms < 1e-9 && text.contains("taken as the same camera in another size: 1600 x 1200 px, times 1/2: 800 x 600 px"), "{text}");
+    // Half a pixel of principal point forgotten is a quarter of one in images of half the size.
+    let naive = std::fs::read_to_string(folder.path().join("half.yml")).unwrap().replace("4.0475", "4.0500").replace("2.9475", "2.9500");
+    std::fs::write(folder.path().join("naive.yml"), naive).unwrap();
+    let text = good(folder.path(), &["diff", "naive.yml", "camera.yml", "--same-camera", "--no-rotation"]);
+    let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!((rms - 0.125_f64.sqrt()).abs() < 1e-3, "{text}");
+    // Of a turned camera sizes do not say which way.
+    good(folder.path(), &["convert", "camera.yml", "--turn", "90", "-o", "upright.yml"]);
+    let output = run(folder.path(), &["diff", "camera.yml", "upright.yml", "--same-camera"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("`calibench convert upright.yml --turn 90` (or 270)"), "{}", stderr(&output));
+}
+
+/// Each square of 2 x 2 pixels as one: their mean.
+fn binned(from: &Path, to: &Path) {
+    let image = image::open(from).unwrap().into_luma16();
+    let mean = |x: u32, y: u32| {
+        let sum: u32 = [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(i, j)| u32::from(image.get_pixel(2 * x + i, 2 * y + j).0[0])).sum();
+        image::Luma([((sum + 2) / 4) as u16])
+    };
+    image::ImageBuffer::from_fn(image.width() / 2, image.height() / 2, mean).save(to).unwrap();
+}
+
+#[test]
+fn photographs_of_half_the_size_are_judged_and_calibrated_with_the_camera_of_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let images = board(folder.path());
+    let mut arguments = vec!["calibrate", "-q", "--chessboard", "9x6:25", "--model", "opencv4", "-o", "camera.yaml"];
+    arguments.extend(images.iter().map(String::as_str));
+    run(folder.path(), &arguments);
+    std::fs::create_dir(folder.path().join("half")).unwrap();
+    let halves: Vec<String> = images.iter().map(|image| image.replace("board/", "half/")).collect();
+    for (whole, half) in images.iter().zip(&halves) {
+        binned(&folder.path().join(whole), &folder.path().join(half));
+    }
+    let size = image::image_dimensions(folder.path().join(&halves[0])).unwrap();
+    let models = ["--model", "opencv4", "--model", "opencv4+bent", "--splits", "3", "--camera", "camera.yaml", "--margin", "0.5"];
+    let output = judge(folder.path(), &halves, &models);
+    let expected =
+        format!("and these have {} x {} px: perhaps the same camera, its images times 1/2; --same-camera takes it so", size.0, size.1);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains(&expected), "{}", stderr(&output));
+    let output = judge(folder.path(), &halves, &[&models[..], &["--same-camera"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    assert!(stdout(&output).starts_with("- **holds**: ") && stderr(&output).contains("taken as the same camera in another size"));
+    // A calibration starts from it, too.
+    let mut arguments = vec!["calibrate", "--chessboard", "9x6:25", "--model", "opencv4", "--start", "camera.yaml", "-o", "half.yaml"];
+    arguments.extend(halves.iter().map(String::as_str));
+    let output = run(folder.path(), &arguments);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains(&expected), "{}", stderr(&output));
+    arguments.push("--same-camera");
+    run(folder.path(), &arguments);
+    let text = good(folder.path(), &["diff", "half.yaml", "camera.yaml", "--same-camera"]);
+    let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!(rms < 0.5, "{text}");
+}
