@@ -14,8 +14,16 @@ pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "
 /// The columns of its standard deviations: of X0, Y0, Z0 in object units, of small rotations about the camera's axes in degrees.
 pub const POSE_SIGMA_COLUMNS: [&str; 6] = ["sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg"];
 
-const FORM: Form =
-    Form { what: "station file", key: "image", partner: None, required: &POSE_COLUMNS, optional: &[], others: true, passed_over: &[] };
+const FORM: Form = Form {
+    what: "station file",
+    key: "image",
+    partner: None,
+    group: None,
+    required: &POSE_COLUMNS,
+    optional: &[],
+    others: true,
+    passed_over: &[],
+};
 /// Standard deviations of the centre, and of a small rotation about the camera's axes.
 const GROUPS: [&[&str]; 2] = [POSE_SIGMA_COLUMNS.split_at(3).0, POSE_SIGMA_COLUMNS.split_at(3).1];
 /// With standard deviations; each group is there whole or not at all.
