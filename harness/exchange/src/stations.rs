@@ -58,7 +58,7 @@ pub fn parse_observed_stations(file: &str, text: &[u8]) -> Result<Vec<ObservedSt
 }
 
 fn sigmas(file: &str, row: &Row, group: usize) -> Result<Option<[f64; 3]>, PointFileError> {
-    let Some(sigmas) = row.group::<3>(group) else { return Ok(None) };
+    let Some(sigmas) = row.optional::<3>(group) else { return Ok(None) };
     match sigmas.iter().position(|sigma| *sigma <= 0.0) {
         None => Ok(Some(sigmas)),
         Some(axis) => {

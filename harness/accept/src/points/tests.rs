@@ -96,7 +96,7 @@ fn what_is_missing_biased_or_close_is_said() {
 fn intervals_hold_the_truth_in_95_of_100() {
     const TESTS: usize = 2000;
     let mut random = ChaCha8Rng::seed_from_u64(2023);
-    for sigmas in [[1.0, 1.0, 1.0], [1.0, 0.2, 3.0]] {
+    for sigmas in [[1.0_f64, 1.0, 1.0], [1.0, 0.2, 3.0]] {
         let mut held = [0_usize; 3];
         let truths = [sigmas[0].hypot(sigmas[1]), sigmas[2], sigmas[0].hypot(sigmas[1]).hypot(sigmas[2])];
         for _ in 0..TESTS {
