@@ -1,5 +1,6 @@
 //! Tests that cross crates.
 
+mod accept;
 mod answers;
 mod architecture;
 mod atlas;

@@ -115,6 +115,14 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ("intersect", &[("calibench intersect --camera cam.yaml --points points.csv --stations stations.csv -o xyz.csv", "object points")]),
     ("orient", &[("calibench orient --points points.csv --left A --right B --camera camera.toml -o model.csv", "a pair and its model")]),
     (
+        "accept",
+        &[
+            ("calibench accept --lengths lengths.csv --limit 0.02,1e-5 --unit mm --plot errors.png", "after VDI/VDE 2634-1"),
+            ("calibench accept --lengths bars.csv --measured xyz.csv --limit 0.05 --scale scale.csv", "from measured points"),
+            ("calibench accept --check-points survey.csv --measured xyz.csv --vertical 0.1 --json", "after ASPRS 2023"),
+        ],
+    ),
+    (
         "convert",
         &[
             ("calibench convert camera.xml --to opencv -o camera.yaml", "the format of what is read is found by content"),

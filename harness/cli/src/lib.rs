@@ -6,6 +6,7 @@
 #[macro_use]
 mod say;
 
+mod accept;
 mod bless;
 mod board;
 mod calibrate;
@@ -118,6 +119,8 @@ enum Command {
     Bless(bless::Bless),
     /// Measure what the gate sees and how often it is wrong, on the baselines of this project; prints a page of Markdown
     GatePower(power::Power),
+    /// Ask calibration systems for cameras, class by class, and keep their answers in reference/league: what is up to date is left
+    League(league::League),
     /// Measure points per second of methods, on one thread, for reports to read
     Speed(speed::SpeedCommand),
     /// Measure points in photographs
@@ -138,8 +141,8 @@ enum Command {
     Intersect(intersect::Intersect),
     /// Orient two images relatively to each other, and intersect the model that they make; the cameras are known
     Orient(orient::Orient),
-    /// Ask calibration systems for cameras, class by class, and keep their answers in reference/league: what is up to date is left
-    League(league::League),
+    /// Say whether measuring keeps what is specified, by calibrated lengths or check points; exit code 1 if not, 3 where it cannot be told
+    Accept(Box<accept::Accept>),
     /// Convert a camera file to another convention
     Convert(convert::Convert),
     /// Show what is in a camera file: parameters, field of view, distortion, fold-over
@@ -237,6 +240,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Resect(resect) => resect.run(&context),
         Command::Intersect(intersect) => intersect.run(&context),
         Command::Orient(orient) => orient.run(&context),
+        Command::Accept(accept) => accept.run(),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

@@ -20,6 +20,7 @@ const FORM: Form = Form {
     what: "control file",
     key: "target",
     partner: None,
+    group: None,
     required: &["X", "Y", "Z"],
     optional: &[&SIGMAS, &RADIUS, &NORMAL],
     others: false,
@@ -74,12 +75,12 @@ fn groups(row: &ControlRow) -> [Option<Vec<f64>>; 3] {
 
 fn control(file: &str, row: Row) -> Result<ControlRow, PointFileError> {
     let wrong = |column: &str, problem: &str| Err(wrong(file, Some(row.line), Some(column), problem.to_owned()));
-    let sigmas = row.group(0);
+    let sigmas = row.optional(0);
     if let Some(axis) = sigmas.and_then(|sigmas: [f64; 3]| sigmas.iter().position(|sigma| *sigma <= 0.0)) {
         return wrong(SIGMAS[axis], "expected a positive standard deviation; leave all three empty for a point without");
     }
-    let normal = row.group(2);
-    let disc = match (row.group(1), normal) {
+    let normal = row.optional(2);
+    let disc = match (row.optional(1), normal) {
         (Some([radius]), _) if radius <= 0.0 => return wrong(RADIUS[0], "expected a positive radius; leave it empty for what is no disc"),
         (Some(_), Some([0.0, 0.0, 0.0])) => {
             return wrong(NORMAL[0], "expected a normal with a length; leave all three empty for a disc without");

@@ -19,6 +19,8 @@ pub(crate) struct Form {
     pub(crate) key: &'static str,
     /// The column with a second name, of rows that stand for a pair: then each pair is there once, in whichever order.
     pub(crate) partner: Option<&'static str>,
+    /// The column with what rows belong to, where names are told apart within it alone.
+    pub(crate) group: Option<&'static str>,
     /// Columns of numbers that must be there.
     pub(crate) required: &'static [&'static str],
     /// Groups of columns of numbers that may be there, each whole or not at all.
@@ -35,13 +37,15 @@ pub(crate) struct Row {
     pub(crate) name: String,
     /// The second name, or nothing.
     pub(crate) partner: String,
+    /// What the row belongs to, or nothing.
+    pub(crate) group: String,
     pub(crate) numbers: Vec<f64>,
     optional: Vec<Option<Vec<f64>>>,
 }
 
 impl Row {
     /// The numbers of an optional group, if the row has them.
-    pub(crate) fn group<const N: usize>(&self, group: usize) -> Option<[f64; N]> {
+    pub(crate) fn optional<const N: usize>(&self, group: usize) -> Option<[f64; N]> {
         self.optional.get(group)?.as_deref()?.try_into().ok()
     }
 }
@@ -79,12 +83,18 @@ impl Form {
             let row = self.row(&Cells { file, places: &places, record: &record, line })?;
             let place = match self.partner {
                 None => seen.place(&row.name),
-                Some(_) => seen.place(&format!("{:?}", [row.name.as_str().min(&row.partner), row.name.as_str().max(&row.partner)])),
+                Some(_) => {
+                    let pair = [row.name.as_str().min(&row.partner), row.name.as_str().max(&row.partner)];
+                    seen.place(&format!("{:?}", [&row.group, pair[0], pair[1]]))
+                }
             };
             if let Some(earlier) = lines.get(place) {
+                let within = self.group.map_or_else(String::new, |group| format!(" in each {group}"));
                 let problem = match self.partner {
                     None => format!("`{}` is already on line {earlier}; expected each {} once", row.name, self.key),
-                    Some(_) => format!("`{}` and `{}` are already on line {earlier}; expected each pair once", row.name, row.partner),
+                    Some(_) => {
+                        format!("`{}` and `{}` are already on line {earlier}; expected each pair once{within}", row.name, row.partner)
+                    }
                 };
                 return Err(wrong(file, Some(line), Some(self.key), problem));
             }
@@ -96,7 +106,7 @@ impl Form {
     }
 
     fn columns(&self) -> Vec<&'static str> {
-        std::iter::once(self.key).chain(self.partner).chain(self.required.iter().copied()).collect()
+        self.group.into_iter().chain([self.key]).chain(self.partner).chain(self.required.iter().copied()).collect()
     }
 
     fn places(&self, file: &str, header: &StringRecord) -> Result<HashMap<String, usize>, PointFileError> {
@@ -129,14 +139,15 @@ impl Form {
             let name = cells.text(column).ok_or_else(|| cells.wrong(column, "is empty; expected a name".into()))?;
             Ok(escape::from_cell(name).to_owned())
         };
-        let (name, partner) = (named(self.key)?, self.partner.map(named).transpose()?.unwrap_or_default());
+        let named_if = |column: Option<&str>| Ok::<_, PointFileError>(column.map(named).transpose()?.unwrap_or_default());
+        let (group, name, partner) = (named_if(self.group)?, named(self.key)?, named_if(self.partner)?);
         let numbers = self.required.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()?;
-        let group = |group: &&[&str]| {
-            let given = group.iter().any(|column| cells.text(column).is_some());
-            given.then(|| group.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()
+        let of = |columns: &&[&str]| {
+            let given = columns.iter().any(|column| cells.text(column).is_some());
+            given.then(|| columns.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()
         };
-        let optional = self.optional.iter().map(group).collect::<Result<_, _>>()?;
-        Ok(Row { line: cells.line, name, partner, numbers, optional })
+        let optional = self.optional.iter().map(of).collect::<Result<_, _>>()?;
+        Ok(Row { line: cells.line, name, partner, group, numbers, optional })
     }
 }
 

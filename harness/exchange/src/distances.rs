@@ -14,6 +14,7 @@ const FORM: Form = Form {
     what: "file of distances",
     key: "target_a",
     partner: Some(PARTNER),
+    group: None,
     required: &["distance", "sigma"],
     optional: &[],
     others: false,

@@ -1,9 +1,10 @@
-//! Tables of other tools and of ours: image coordinates, control, distances, stations, and the list of rendered images.
+//! Tables of other tools and of ours: image coordinates, control, distances, lengths, stations, and the list of rendered images.
 
 pub mod control;
 mod csv_named_rows;
 pub mod distances;
 pub mod fingerprint;
+pub mod lengths;
 pub mod points;
 pub mod points_write;
 pub mod rendered;
@@ -13,6 +14,7 @@ pub mod times;
 pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use distances::read_distances;
 pub use fingerprint::Fingerprint;
+pub use lengths::read_lengths;
 pub use points::{PointFile, PointFileError, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};

@@ -14,8 +14,16 @@ pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "
 /// The columns of its standard deviations: of X0, Y0, Z0 in object units, of small rotations about the camera's axes in degrees.
 pub const POSE_SIGMA_COLUMNS: [&str; 6] = ["sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg"];
 
-const FORM: Form =
-    Form { what: "station file", key: "image", partner: None, required: &POSE_COLUMNS, optional: &[], others: true, passed_over: &[] };
+const FORM: Form = Form {
+    what: "station file",
+    key: "image",
+    partner: None,
+    group: None,
+    required: &POSE_COLUMNS,
+    optional: &[],
+    others: true,
+    passed_over: &[],
+};
 /// Standard deviations of the centre, and of a small rotation about the camera's axes.
 const GROUPS: [&[&str]; 2] = [POSE_SIGMA_COLUMNS.split_at(3).0, POSE_SIGMA_COLUMNS.split_at(3).1];
 /// With standard deviations; each group is there whole or not at all.
@@ -50,7 +58,7 @@ pub fn parse_observed_stations(file: &str, text: &[u8]) -> Result<Vec<ObservedSt
 }
 
 fn sigmas(file: &str, row: &Row, group: usize) -> Result<Option<[f64; 3]>, PointFileError> {
-    let Some(sigmas) = row.group::<3>(group) else { return Ok(None) };
+    let Some(sigmas) = row.optional::<3>(group) else { return Ok(None) };
     match sigmas.iter().position(|sigma| *sigma <= 0.0) {
         None => Ok(Some(sigmas)),
         Some(axis) => {

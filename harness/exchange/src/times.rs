@@ -5,8 +5,16 @@ use std::path::Path;
 use crate::csv_named_rows::Form;
 use crate::points::PointFileError;
 
-const FORM: Form =
-    Form { what: "file of times", key: "image", partner: None, required: &["time"], optional: &[], others: true, passed_over: &[] };
+const FORM: Form = Form {
+    what: "file of times",
+    key: "image",
+    partner: None,
+    group: None,
+    required: &["time"],
+    optional: &[],
+    others: true,
+    passed_over: &[],
+};
 
 /// Reads when images were taken: header `image,time`, seconds from any moment; other columns are read over.
 ///

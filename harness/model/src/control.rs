@@ -1,4 +1,4 @@
-//! What is known of an object: points of known coordinates (control), and distances.
+//! What is known of an object: points of known coordinates (control), and distances and lengths.
 
 /// A point of known object coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +22,21 @@ pub struct MeasuredDistance {
     pub value: f64,
     /// Its standard deviation, object units.
     pub sigma: f64,
+}
+
+/// A calibrated length by which measuring is tested, and what was measured of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestLength {
+    /// The measurement line that it lies on.
+    pub line: String,
+    /// The targets at its ends.
+    pub targets: [String; 2],
+    /// Calibrated length, object units.
+    pub calibrated: f64,
+    /// Standard uncertainty of the calibrated length, object units; 0 where it is taken as exact.
+    pub sigma: f64,
+    /// Measured length, object units; `None` where it follows from measured points.
+    pub measured: Option<f64>,
 }
 
 /// What is known of a target that is a disc.

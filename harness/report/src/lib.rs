@@ -1,5 +1,6 @@
 //! Reports: Markdown and PNG, a pure function of records and published tables.
 
+pub mod acceptance;
 mod answer;
 pub mod atlas;
 mod axes;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use calibench_cameras::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
 use calibench_exchange::control::{parse_control, write_control};
+use calibench_exchange::lengths::parse_lengths;
 use calibench_exchange::points::parse_points;
 use calibench_exchange::stations::{parse_observed_stations, parse_stations};
 use calibench_exchange::write_points;
@@ -28,12 +29,13 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 17] = [
+pub const READERS: [Reader; 18] = [
     Reader { name: "cameras", seeds: "cameras", read: camera },
     Reader { name: "cameras-sized", seeds: "cameras", read: camera_of_size },
     Reader { name: "camera-lists", seeds: "camera-lists", read: camera_list },
     Reader { name: "points", seeds: "points", read: points },
     Reader { name: "control", seeds: "control", read: control },
+    Reader { name: "lengths", seeds: "lengths", read: |bytes, _| words(parse_lengths(FILE, bytes)) },
     Reader { name: "stations", seeds: "stations", read: |bytes, _| words(parse_stations(FILE, bytes)) },
     Reader { name: "observed-stations", seeds: "stations", read: |bytes, _| words(parse_observed_stations(FILE, bytes)) },
     Reader { name: "scenarios", seeds: "scenarios", read: scenario },

@@ -40,6 +40,7 @@ fn writers() -> Vec<FileWriter> {
         new(&["convert", "wall/camera.toml", "-q", "--to", "photogrammetric"], "-o", "toml", "wall/camera.toml"),
         new(&["convert", "wall/camera.toml", "-q", "--to", "photogrammetric"], "--plot", "png", "wall/camera.toml"),
         new(&["diff", "wall/camera.toml", "found.toml"], "--plot", "png", "found.toml"),
+        new(&["accept", "--lengths", "lengths.csv", "--limit", "0.03"], "--plot", "png", "lengths.csv"),
         new(&["stmap", "found.toml"], "-o", "exr", "found.toml"),
         new(&["stmap", "found.toml", "--redistort", "--overscan", "auto"], "-o", "tif", "found.toml"),
         new(&["stmap", "found.toml"], "-o", "png", "found.toml"),

@@ -20,6 +20,7 @@ fn workshop() -> tempfile::TempDir {
     let folder = wall();
     let path = folder.path();
     write(path, "mine.toml", BOARD);
+    write(path, "lengths.csv", &crate::accept::lengths(0.01, 0.01));
     write(path, "sweep.toml", &BOARD.replacen("[camera]", &format!("{SWEEP}[camera]"), 1));
     let root = root();
     good(path, &["--root", root.to_str().unwrap(), "render", "testfields/chessboard", "-o", "board", "-q"]);

@@ -1,5 +1,6 @@
 //! What commands answer to programs: one JSON document each, with a schema that says what every key is.
 
+mod acceptance;
 mod calibration;
 mod camera;
 mod compared;
@@ -21,6 +22,7 @@ use calibench_model::convert::Spread;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+pub use acceptance::AcceptanceAnswer;
 pub use calibration::CalibrationAnswer;
 pub use camera::{CameraAnswer, CameraFileAnswer, Format as CameraFileFormat};
 pub use conversion::{ConversionAnswer, ConvertedCamera};

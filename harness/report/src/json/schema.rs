@@ -5,11 +5,11 @@ use schemars::schema_for;
 use serde_json::{Value, json};
 
 use super::{
-    Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, MeasurementAnswer, RigAnswer,
+    AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, MeasurementAnswer, RigAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 7] = [
+pub const COMMANDS: [&str; 8] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
@@ -17,6 +17,7 @@ pub const COMMANDS: [&str; 7] = [
     CameraFileAnswer::COMMAND,
     DifferenceAnswer::COMMAND,
     Measured::COMMAND,
+    AcceptanceAnswer::COMMAND,
 ];
 
 /// What `measure` answers: the schema is the same for any rows.
@@ -32,6 +33,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         CameraFileAnswer::COMMAND => of::<CameraFileAnswer>(),
         DifferenceAnswer::COMMAND => of::<DifferenceAnswer>(),
         Measured::COMMAND => of::<Measured>(),
+        AcceptanceAnswer::COMMAND => of::<AcceptanceAnswer>(),
         _ => return None,
     })
 }
