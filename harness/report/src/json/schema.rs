@@ -5,17 +5,19 @@ use schemars::schema_for;
 use serde_json::{Value, json};
 
 use super::{
-    Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, MeasurementAnswer, RigAnswer,
+    Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer, MeasurementAnswer,
+    RigAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 7] = [
+pub const COMMANDS: [&str; 8] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
     ConversionAnswer::COMMAND,
     CameraFileAnswer::COMMAND,
     DifferenceAnswer::COMMAND,
+    ListAnswer::COMMAND,
     Measured::COMMAND,
 ];
 
@@ -31,6 +33,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
         CameraFileAnswer::COMMAND => of::<CameraFileAnswer>(),
         DifferenceAnswer::COMMAND => of::<DifferenceAnswer>(),
+        ListAnswer::COMMAND => of::<ListAnswer>(),
         Measured::COMMAND => of::<Measured>(),
         _ => return None,
     })
