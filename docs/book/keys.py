@@ -11,8 +11,8 @@ def asked(program, *words):
 
 def commands(program):
     """The names of all commands."""
-    listed = asked(program, "--help").split("Commands:\n")[1].split("\n\n")[0].splitlines()
-    names = [line.split()[0] for line in listed if line.startswith("  ") and not line.startswith("   ")]
+    groups = asked(program, "--help").split("\nOptions:\n")[0].split("\n\n")[2:]
+    names = [line.split()[0] for group in groups for line in group.splitlines()[1:]]
     return [name for name in names if name != "help"]
 
 

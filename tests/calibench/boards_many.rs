@@ -229,8 +229,8 @@ fn what_is_no_board_is_not_named() {
     flat.save(folder.path().join("flat.png")).unwrap();
     for (arguments, said) in [
         (&["detect", "flat.png", "--board", "unknown"][..], "no board that is known was found"),
-        (&["detect", "flat.png", "--board", "unknown", "-o", "a.csv"], "leave -o and --all out"),
-        (&["detect", "flat.png", "--board", "unknown", "--all"], "leave -o and --all out"),
+        (&["detect", "flat.png", "--board", "unknown", "-o", "a.csv"], "leave -o, --all and --draw out"),
+        (&["detect", "flat.png", "--board", "unknown", "--all"], "leave -o, --all and --draw out"),
         (&["detect", "flat.png", "--board", "unknwon"], "is no kind of board"),
         (&["calibrate", "flat.png", "--board", "unknown"], "`detect --board unknown` names the board that is there"),
         (&["detect", "flat.png", "--board", "gridboard:5x7:40:10:DICT_6X6_250", "--all"], "no board was found"),

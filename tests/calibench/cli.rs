@@ -28,6 +28,7 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
     let bad = bad.to_str().unwrap().to_owned();
     for (arguments, expected) in [
         (&["run", "galo-2011/cornrs"][..], "did you mean `galo-2011/corners`?"),
+        (&["run", "corners", "corners/noise"], "asked for twice"),
         (&["run", &bad], "bad.toml:1:1"),
         (&["run", "missing.toml"], "missing.toml: No such file"),
         (&["run"], "required"),
@@ -38,7 +39,7 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
         (&["run", "galo-2011/corners", "--trials", "5"], "nothing is random"),
         (&["run", "corners/noise", "--seed", "-1"], "--seed"),
         (&["report", "galo"], "did you mean `galo-2011`?"),
-        (&["report", "galo-2011"], "run it first with `calibench run galo-2011/corners`"),
+        (&["report", "galo-2011"], "no scenario of `galo-2011` was run: `calibench run galo-2011` runs all "),
         (&["measure", "no.png", "--points", "no.csv"], "no.csv: No such file"),
         (&["detect", "no.png", "--chessboard", "9x6"], "no.png: No such file"),
         (&["detect", "no.png", "--chessboard", "9"], "expected inner corners as COLUMNSxROWS"),

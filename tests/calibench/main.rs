@@ -21,6 +21,7 @@ mod diagnostics;
 mod doubts;
 mod eccentricity;
 mod finders;
+mod first_steps;
 mod free_networks;
 mod fuzz;
 mod galo;

@@ -44,6 +44,9 @@ pub struct Diff {
     /// Say what the difference is on an object at this distance, in its unit
     #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
     distance: Option<f64>,
+    /// Difference over the frame, px RMS (of a rig, of the points pictured), beyond which the exit code is 1
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    limit: Option<f64>,
     /// Compare rigs: files of several cameras with where they sit, as Kalibr's chains and OpenCV's stereo files; needs --distance
     #[arg(long, requires = "distance", conflicts_with_all = ["plot", "points", "no_rotation", "radius", "json"])]
     rig: bool,
@@ -87,13 +90,27 @@ impl Diff {
         });
         if self.answered.json {
             let files = [&self.first, &self.second].map(|path| path.display().to_string());
-            answer(&DifferenceAnswer::new(files, a, &found, !self.no_rotation, parts, self.distance))?;
+            let told = DifferenceAnswer::new(files, a, &found, !self.no_rotation, parts, self.distance);
+            answer(&told.with_limit(self.limit, found.spread.rms_px))?;
         } else {
             print(&self.words(&found, parts))?;
         }
-        let Some(plot) = &plot else { return Ok(()) };
-        let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
-        Ok(field(&title, &first, &found.vectors, measured).write(plot)?)
+        if let Some(plot) = &plot {
+            let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
+            field(&title, &first, &found.vectors, measured).write(plot)?;
+        }
+        self.gate(found.spread.rms_px)
+    }
+
+    /// Whether cameras that differ by so much, px RMS, pass; what was compared nowhere does not.
+    fn gate(&self, rms_px: f64) -> Result<(), Failure> {
+        match self.limit {
+            Some(limit) if rms_px.is_nan() || rms_px > limit => {
+                say!("the cameras differ by {} px RMS, more than the {limit} px of --limit", plain(rms_px));
+                Err(Failure::Gate)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The second camera for images of the first one's size.
@@ -119,10 +136,11 @@ impl Diff {
             let counts = format!("{} and {} cameras", first.len(), second.len());
             return Err(Failure::input(format!("the files hold {counts}; expected two rigs of as many, two at least")));
         }
-        let mut text = String::new();
+        let (mut text, mut most) = (String::new(), 0.0_f64);
         for (place, (a, b)) in first.iter().zip(&second).enumerate().skip(1) {
             let found = rig_difference([&first[0], a], [&second[0], b], distance);
             let found = found.map_err(|why| Failure::input(format!("camera {} of the rigs: {why}", place + 1)))?;
+            most = most.max(found.px[0]);
             let name = if a.name.is_empty() { format!("camera {}", place + 1) } else { a.name.clone() };
             text.push_str(&format!(
                 "{name}: moved by {}, turned by {:.4}\u{b0}; baselines {} and {}\nat {distance}: {} RMS, {} at most; {} px RMS, {} px at most, of {} points\n",
@@ -137,7 +155,8 @@ impl Diff {
                 found.points
             ));
         }
-        print(&text)
+        print(&text)?;
+        self.gate(most)
     }
 
     fn words(&self, found: &Difference, parts: Option<[Option<Part>; 2]>) -> String {

@@ -4,10 +4,12 @@ use clap::Command;
 
 /// Lines as a user types them, and what each is for, by command.
 pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
+    ("demo", &[("calibench demo", "a folder calibench-demo, whose report.html tells the story")]),
     (
         "list",
         &[
             ("calibench list methods", "every method with its parameters, their defaults and ranges"),
+            ("calibench list methods --json", "the same for a program"),
             ("calibench list peers", "what other tools' numbers mean, by version"),
         ],
     ),
@@ -16,6 +18,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "run",
         &[
             ("calibench run --all", "every scenario of the project"),
+            ("calibench run corners", "every scenario of a family"),
             ("calibench run corners/noise -m forstner -m lsm:window=13 --trials 100", "two methods on the same 100 images"),
             ("calibench run corners/noise --trials 1000 --part 3/8 -o parts", "the third of eight parts, on a machine of its own"),
         ],
@@ -29,7 +32,13 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("render", &[("calibench render corners/noise --trials 20 -o pictures", "twenty images, with the truth beside them")]),
-    ("print", &[("calibench print targets/aprilgrid -o board", "SVG and PDF at true scale, and target.yaml for Kalibr")]),
+    (
+        "print",
+        &[
+            ("calibench print --board 9x6:25 --paper A4", "a chessboard on one sheet, in the folder board"),
+            ("calibench print targets/aprilgrid -o board", "SVG and PDF at true scale, and target.yaml for Kalibr"),
+        ],
+    ),
     (
         "report",
         &[("calibench report", "all pages, from the records that are there"), ("calibench report --html", "all of them in one file")],
@@ -62,6 +71,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "measure",
         &[
+            ("calibench measure photos --board 9x6:25 -o measured.csv", "a board's points in a folder of photographs"),
             ("calibench measure a.jpg b.jpg --points approx.csv -m lsm:window=13 -o measured.csv", "by one method"),
             (
                 "calibench measure a.jpg --points approx.csv -m disc=parametric_circle -m square=lsm --json",
@@ -72,7 +82,8 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "detect",
         &[
-            ("calibench detect a.jpg b.jpg --chessboard 9x6 -o approx.csv", "a chessboard's corners"),
+            ("calibench detect a.jpg b.jpg --board 9x6:25 -o approx.csv", "a chessboard's corners"),
+            ("calibench detect photos --board 9x6:25 --draw drawn -o approx.csv", "a folder, with what was found drawn on each"),
             ("calibench detect a.jpg b.jpg --board unknown", "what board is this, and by which words is it found"),
             ("calibench detect room.jpg --board gridboard:5x7:40:10:DICT_6X6_250 --all -o approx.csv", "each of several boards"),
             ("calibench detect a.jpg --testfield testfields/coded -o approx.csv", "a coded field"),
@@ -90,7 +101,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "calibrate",
         &[
-            ("calibench calibrate a.jpg b.jpg c.jpg --chessboard 9x6:25 -o camera.yaml --report page", "from photographs"),
+            ("calibench calibrate photos --board 9x6:25 -o camera.yaml --report page", "from photographs"),
             ("calibench calibrate --points points.csv --control control.csv --size 4272x2848 -o camera.yaml", "from points"),
             (
                 "calibench calibrate --points points.csv --distances bars.csv --size 8688x5792 --length 6,8",
@@ -106,9 +117,9 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "judge",
         &[
-            ("calibench judge a.jpg b.jpg c.jpg --chessboard 9x6:25 --report page", "which operator and which model"),
-            ("calibench judge --camera camera.yaml --chessboard 9x6:25 a.jpg b.jpg c.jpg", "whether a camera still holds"),
-            ("calibench judge --points a.csv --points mine=b.csv --chessboard 9x6:25 --size 640x480", "whose corners are better"),
+            ("calibench judge photos --board 9x6:25 --report page", "which operator and which model"),
+            ("calibench judge new --camera camera.yaml --board 9x6:25 --limit 0.5", "whether a camera still holds"),
+            ("calibench judge --points a.csv --points mine=b.csv --board 9x6:25 --size 640x480", "whose corners are better"),
         ],
     ),
     ("resect", &[("calibench resect --camera cam.yaml --points points.csv --control control.csv -o stations.csv", "poses")]),
@@ -141,6 +152,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "diff",
         &[
             ("calibench diff a.xml b.yaml --plot diff.png", "px over the frame, after the best rotation"),
+            ("calibench diff a.xml b.yaml --limit 0.5", "exit code 1 where they differ by more, px RMS"),
             ("calibench diff a.xml b.yaml --points points.csv --distance 5", "where points were measured, and on an object"),
             ("calibench diff before.yaml after.yaml --rig --distance 2", "two rigs, at 2 units before them"),
             ("calibench diff half.yaml whole.yaml --same-camera", "of images of two sizes"),

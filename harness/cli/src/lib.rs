@@ -18,11 +18,13 @@ mod context;
 mod control;
 mod convert;
 mod deliver;
+mod demo;
 mod detect;
 mod diff;
 mod examples;
 mod failure;
 mod gated;
+mod groups;
 mod init;
 mod inputs;
 mod intersect;
@@ -33,6 +35,7 @@ mod list;
 mod manual;
 mod measure;
 mod notes;
+mod offers;
 mod orient;
 mod output;
 mod pages;
@@ -90,10 +93,14 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// List what there is
+    /// Show it all once, in a minute: a board, photographs whose truth is known, a page
+    Demo(demo::Demo),
+    /// List what there is: scenarios, methods, formats, figures, what other tools mean
     List {
         /// What to list
         what: list::What,
+        #[command(flatten)]
+        answered: deliver::As,
     },
     /// Show a scenario as it is resolved, and write a preview of its image
     Show(show::Show),
@@ -103,63 +110,63 @@ enum Command {
     Merge(part::Merge),
     /// Print the records of a run, as they lie compressed in its folder
     Records(records::Records),
-    /// Write a scenario's images with the truth about every target, the camera and the poses
+    /// Write a scenario's images, with the truth about targets, camera and poses
     Render(render::Render),
-    /// Write a scenario's testfield at true scale, as SVG and PDF, and a board's target.yaml for Kalibr
+    /// Write a board or a scenario's testfield for the printer, at true scale, as PDF and SVG
     Print(print::Print),
     /// Write reports from records alone; runs nothing
     Report(report::Report),
-    /// Draw the records of a sweep as curves or maps, with the numbers beside them; runs nothing
+    /// Draw the records of a sweep as curves or maps; runs nothing
     Plot(plot::Plot),
-    /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
+    /// Compare today's accuracy with the blessed one; exit code 1 if it regressed
     Check(check::Check),
-    /// Start a project of one's own with a gate: a scenario, its baseline, the schema
+    /// Start a project of your own with a gate: a scenario, its baseline, the schema
     Init(init::Init),
     /// Accept today's accuracy as the baseline: lists what gets worse, and asks
     Bless(bless::Bless),
-    /// Measure what the gate sees and how often it is wrong, on the baselines of this project; prints a page of Markdown
+    /// Measure what changes the gate sees, and how often it is wrong
     GatePower(power::Power),
-    /// Ask calibration systems for cameras, class by class, and keep their answers in reference/league: what is up to date is left
-    League(league::League),
-    /// Measure points per second of methods, on one thread, for reports to read
+    /// Measure how many points a second methods measure, on one thread
     Speed(speed::SpeedCommand),
-    /// Measure points in photographs
+    /// Measure a board's points, or points near given positions, in photographs
     Measure(measure::Measure),
-    /// Find a chessboard's corners, or the targets of a coded field, in photographs: approximate positions for `measure`
+    /// Find a board or a coded field in photographs: names and approximate positions
     Detect(detect::Detect),
-    /// Write a page to point at targets in photographs, or serve it and measure at each click
+    /// Make a page to point at targets in photographs by hand
     Point(Box<point::Point>),
-    /// Write the control file of a chessboard, for `calibrate` and `resect`
+    /// Write the control file of a board: the coordinates of its points
     Control(control::Control),
-    /// Calibrate a camera from measured points and control, or from photographs of a chessboard
+    /// Calibrate a camera from photographs of a board, or from measured points
     Calibrate(Box<calibrate::Calibrate>),
-    /// Say which operator and which camera model to trust on photographs of a chessboard, and how far; without truth
+    /// Say which operator and which camera model to trust on your photographs, and how far
     Judge(Box<judge::Judge>),
-    /// Orient images from control points; the camera is known
+    /// Find where images were taken, from control points; the camera is known
     Resect(resect::Resect),
-    /// Intersect object points from oriented images; camera and poses are known
+    /// Intersect object points from images whose camera and poses are known
     Intersect(intersect::Intersect),
-    /// Orient two images relatively to each other, and intersect the model that they make; the cameras are known
+    /// Orient two images relatively to each other; the cameras are known
     Orient(orient::Orient),
-    /// Say whether measuring keeps what is specified, by calibrated lengths or check points; exit code 1 if not, 3 where it cannot be told
+    /// Say whether measuring keeps what is specified, by lengths or check points
     Accept(Box<accept::Accept>),
-    /// Convert a camera file to another convention
+    /// Compare whole calibration systems on rendered photographs, class by class
+    League(league::League),
+    /// Convert a camera file to the format of another tool
     Convert(convert::Convert),
-    /// Show what is in a camera file: parameters, field of view, distortion, fold-over
+    /// Show what is in a camera file: parameters, field of view, distortion
     Camera(camera::CameraCommand),
     /// Say how far two cameras differ, in px over the frame, after the best rotation
     Diff(diff::Diff),
-    /// Write a camera's distortion as an ST-map for compositing programs, either way, or check one
+    /// Write a camera's distortion as an ST-map for compositing programs, or check one
     Stmap(stmap::StMapCommand),
-    /// Make photographs, or points in them, as another camera would have them: without distortion, in another model, on a sphere
+    /// Take the distortion out of photographs or points, or give them another camera's
     Undistort(Box<undistort::Undistort>),
-    /// Try a program of one's own that is a method: whether it does what every plug-in must
+    /// Try a program of your own that is a method: does it do what every plug-in must
     #[command(subcommand)]
     Plugin(plugin::PluginCommand),
     /// Restrict this process, then become another program: how plug-ins are started
     #[command(name = CONFINED, hide = true)]
     Confined(confined::Confined),
-    /// Print the JSON Schema of scenario files or of published tables, for editors, or of what a command answers with --json
+    /// Print the JSON Schema of scenario files, published tables or a command's --json
     Schema {
         /// Of what
         #[arg(default_value = "scenarios")]
@@ -173,7 +180,7 @@ enum Command {
 
 /// The command line with all that its help says.
 fn command_line() -> clap::Command {
-    let line = examples::with_examples(Arguments::command());
+    let line = groups::with_groups(examples::with_examples(Arguments::command()));
     line.mut_subcommand("convert", |convert| convert.mut_arg("size", |size| size.help(convert::SIZE)))
 }
 
@@ -216,7 +223,8 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
     calibench_project::here()?;
     let context = context::Context::new(toolbox, arguments.quiet, arguments.root, arguments.plugins);
     match arguments.command {
-        Command::List { what } => list::list(&context, what),
+        Command::Demo(demo) => demo.run(&context),
+        Command::List { what, answered } => list::list(&context, what, answered),
         Command::Show(show) => show.run(&context),
         Command::Run(run) => run.run(&context),
         Command::Merge(merge) => merge.run(&context),
@@ -248,7 +256,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Undistort(undistort) => undistort.run(&context),
         Command::Plugin(plugin) => plugin.run(&context),
         Command::Confined(confined) => Err(confined.failure()),
-        Command::Completions(completions) => completions.run(&command_line()),
+        Command::Completions(completions) => completions.run(&offers::with_offers(command_line(), &context.toolbox.registry)),
         Command::Man(man) => man.run(command_line()),
         Command::Schema { of } => deliver::print(&of.text(context.registry()?)),
     }

@@ -4,10 +4,17 @@ use std::path::PathBuf;
 
 use calibench_model::camera::ImageSize;
 use calibench_photographs::names::same_size;
-use calibench_photographs::{Asked, PhotographsError, Reader};
+use calibench_photographs::{Asked, PhotographsError, Reader, in_folders};
 use clap::Args;
 
 use crate::failure::Failure;
+
+/// Photographs, with those in a folder in its place; says on standard error which pictures of a folder are not read.
+pub fn with_folders(given: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let (photos, notes) = in_folders(given)?;
+    notes.iter().for_each(|line| say!("{line}"));
+    Ok(photos)
+}
 
 /// How photographs are read.
 #[derive(Args)]

@@ -1,5 +1,6 @@
 //! `calibench run`.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use calibench_measure::Configured;
@@ -20,7 +21,7 @@ use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Run {
-    /// Names of scenarios, or TOML files
+    /// Names of scenarios or of families of them, as corners/noise or corners, or TOML files
     #[arg(required_unless_present = "all", value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// Every scenario that `list scenarios` lists
@@ -35,6 +36,39 @@ pub struct Run {
     parts: Parts,
     #[command(flatten)]
     reusing: Reusing,
+}
+
+/// What is to be run.
+struct Asked {
+    /// Scenarios and files.
+    names: Vec<String>,
+    /// Those that nobody named one by one.
+    of_families: BTreeSet<String>,
+}
+
+impl Asked {
+    fn all(context: &Context<'_>) -> Result<Self, Failure> {
+        let names = context.catalogue()?.names()?;
+        Ok(Self { of_families: names.iter().cloned().collect(), names })
+    }
+
+    /// What is named, with the scenarios of a family in its place.
+    fn of(context: &Context<'_>, given: &[String]) -> Result<Self, Failure> {
+        // Files need no project.
+        let known = if context.folder()?.is_some() { Self::all(context)?.names } else { Vec::new() };
+        let mut asked = Self { names: Vec::new(), of_families: BTreeSet::new() };
+        for name in given {
+            let family = format!("{}/", name.trim_end_matches('/'));
+            let own: Vec<String> = known.iter().filter(|known| known.starts_with(&family)).cloned().collect();
+            if own.is_empty() || known.contains(name) {
+                asked.names.push(name.clone());
+            } else {
+                asked.names.extend(own.iter().cloned());
+                asked.of_families.extend(own);
+            }
+        }
+        Ok(asked)
+    }
 }
 
 /// What differs from the scenario's file.
@@ -81,13 +115,16 @@ impl Task<'_> {
 
 impl Run {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let mut names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
+        let Asked { mut names, of_families } = if self.all { Asked::all(context)? } else { Asked::of(context, &self.scenarios)? };
         // All are checked before the first is run.
         let mut scenarios = context.scenarios(&names)?;
-        if self.all {
-            // A command of their own runs the others.
-            scenarios.retain(|scenario| !(scenario.nightly && scenario.subject.runs_apart()));
-            names = scenarios.iter().map(|scenario| scenario.name.clone()).collect();
+        // A command of their own runs the others.
+        let is_apart = |scenario: &Scenario| of_families.contains(&scenario.name) && scenario.nightly && scenario.subject.runs_apart();
+        let apart: Vec<String> = scenarios.iter().filter(|scenario| is_apart(scenario)).map(|scenario| scenario.name.clone()).collect();
+        scenarios.retain(|scenario| !apart.contains(&scenario.name));
+        names.retain(|name| !apart.contains(name));
+        if scenarios.is_empty() {
+            return Err(Failure::input(format!("{}: are run by `calibench league`", apart.join(", "))));
         }
         let pages = if self.pages { Some(Pages::of(context, &mut names)?) } else { None };
         if self.pages {
@@ -114,7 +151,8 @@ impl Run {
         let nothing: Vec<&str> =
             scenarios.iter().zip(measured).filter(|(_, points)| *points == Some(0)).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
-        if nothing.is_empty() || (self.all && nothing.len() < scenarios.len()) {
+        let is_of_family = |name: &&str| of_families.contains(*name);
+        if nothing.iter().all(is_of_family) && nothing.len() < scenarios.len() {
             return Ok(());
         }
         Err(Failure::input(format!("{}: nothing was measured", nothing.join(", "))))

@@ -5,8 +5,8 @@ pub mod picture;
 pub mod st_map;
 
 pub use photo::{
-    DeepLevels, Depth, Head, Photo, PhotoError, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely, head_of, parse_photo,
-    read_photo, read_photo_as, read_with_levels, size_of, write_png,
+    DeepLevels, Depth, Foreign, Head, Photo, PhotoError, PhotoFolder, Reading, Turn, encode_float_tiff, encode_png, encode_png_densely,
+    head_of, natural, parse_photo, read_photo, read_photo_as, read_with_levels, size_of, write_png,
 };
 
 /// The example of the README.

@@ -15,6 +15,14 @@ pub enum PhotographsError {
     /// There is none.
     #[error("no photograph was given")]
     None,
+    /// A folder without any.
+    #[error("{}: holds no photograph; expected PNG, JPEG, TIFF, PNM, BMP or WebP{why}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What it holds instead, in words that go on; empty where that is nothing of note.
+        why: String,
+    },
     /// None has the size that is wanted, px.
     #[error("no photograph has {} x {} px; expected one of that size, or the size of some of them", .0.width, .0.height)]
     NoneOfSize(ImageSize),

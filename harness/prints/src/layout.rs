@@ -35,6 +35,16 @@ impl Paper {
     pub const A4: Self = Self::Sheets { width: 210.0, height: 297.0 };
     /// A3.
     pub const A3: Self = Self::Sheets { width: 297.0, height: 420.0 };
+    /// US Letter.
+    pub const LETTER: Self = Self::Sheets { width: 215.9, height: 279.4 };
+
+    /// Width and height that a plate may have to stand on one sheet, mm: upright and across. `None` where a page is as large as its plate.
+    pub fn room(&self) -> Option<[[f64; 2]; 2]> {
+        match *self {
+            Self::Whole => None,
+            Self::Sheets { width, height } => Some([usable([width, height]), usable([height, width])]),
+        }
+    }
 }
 
 /// A page: lengths in mm, origin at its lower left corner, x to the right, y upwards.

@@ -16,12 +16,9 @@ use crate::speeds::Speeds;
 use crate::targets::Comparison;
 use crate::{LoadError, Loaded, Places, ReportError, detectors, load, papers, predictions, published, sweep, targets};
 
-/// The report of `family` from the records of `scenarios`; `None` where nothing of it could be measured here and one that was measured elsewhere is there.
-///
-/// # Errors
-/// Records or tables that cannot be read.
-pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Result<Option<Composed>, ReportError> {
-    let of = |name: &String| {
+/// The records of those `scenarios` that were run, and the names of the others.
+fn read<'s>(places: &Places, scenarios: &'s [String]) -> Result<(Vec<Either>, Vec<&'s str>), LoadError> {
+    let of = |name: &'s String| {
         if let Some(boards) = boards(&places.records, name)? {
             return Ok(boards);
         }
@@ -30,8 +27,27 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
             None => Either::Plain(Box::new(load(&places.records, name)?)),
         })
     };
-    let all: Vec<_> = scenarios.par_iter().map(of).collect();
-    let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let read: Vec<_> = scenarios.par_iter().map(|name| (name.as_str(), of(name))).collect();
+    let (mut all, mut not_run) = (Vec::new(), Vec::new());
+    for (name, one) in read {
+        match one {
+            Err(LoadError::None(_)) => not_run.push(name),
+            one => all.push(one?),
+        }
+    }
+    Ok((all, not_run))
+}
+
+/// The report of `family` from the records of those `scenarios` that were run, which names the others; `None` where nothing of it could be measured here and one that
+/// was measured elsewhere is there.
+///
+/// # Errors
+/// Records or tables that cannot be read; no records at all.
+pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Result<Option<Composed>, ReportError> {
+    let (all, not_run) = read(places, scenarios)?;
+    if all.is_empty() && !not_run.is_empty() {
+        return Err(LoadError::NotRun { family: family.to_owned(), scenarios: scenarios.to_vec() }.into());
+    }
     let loaded: Vec<&Loaded> = all.iter().filter_map(Either::plain).collect();
     if places.reports.join(family).join(PAGE).is_file() && all.iter().all(Either::is_unavailable) {
         return Ok(None);
@@ -44,7 +60,9 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
     let mut texts = Vec::new();
     for (name, table) in &tables {
         let swept = sweeps.iter().copied().find(|swept| swept.name == table.scenario);
+        let missing = table.beside.iter().chain([&table.scenario]).find(|name| not_run.contains(&name.as_str()));
         let section = match swept {
+            _ if missing.is_some() && !table.is_of_adjustments() => published::not_run(table, missing.map_or("", String::as_str)),
             Some(swept) if !table.is_of_adjustments() => published::swept(table, swept)?,
             _ if table.is_of_adjustments() && by_name(&table.scenario).is_err() => published::without_records(table),
             _ => {
@@ -61,13 +79,18 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
     }
     for (name, table, text, after) in texts {
         let file = places.published.join(family).join(format!("{name}.toml"));
-        page.printed.push_str(&(text + &sources.findings(&file, &published::findings(table))? + &after));
+        // What was found out takes its figures from all that was run for it.
+        let findings = if not_run.is_empty() { sources.findings(&file, &published::findings(table))? } else { String::new() };
+        page.printed.push_str(&(text + &findings + &after));
     }
-    page.first_screen = sources.first_screen(&places.published.join(family))?;
-    page.predictions = predictions::page(family, &places.published.join(family), &sources)?;
-    let (text, pictures) = papers::section(family, &loaded, &sweeps)?;
-    page.text.push_str(&text);
-    page.pictures.extend(pictures);
+    if not_run.is_empty() {
+        page.first_screen = sources.first_screen(&places.published.join(family))?;
+        page.predictions = predictions::page(family, &places.published.join(family), &sources)?;
+        let (text, pictures) = papers::section(family, &loaded, &sweeps)?;
+        page.text.push_str(&text);
+        page.pictures.extend(pictures);
+    }
+    page.not_run = not_run.iter().map(|name| (*name).to_owned()).collect();
     let (mut compared, mut detecting) = (Vec::new(), Vec::new());
     for one in &all {
         match one {

@@ -45,6 +45,7 @@ mod scene_figures;
 mod scores_section;
 mod sides;
 pub mod speeds;
+mod story;
 mod studies;
 pub mod sweep;
 mod targets;
@@ -67,7 +68,8 @@ pub use markup::{escaped, json as in_script};
 pub use one_file::{FamilyPages, ONE_FILE, family_pages, one_file};
 pub use picture::PICTURES;
 pub use places::{Places, ReportError, Written};
-pub use scene_figures::preview;
+pub use scene_figures::{Look, found, preview};
+pub use story::{Illustration, story};
 
 /// The example of the README.
 #[cfg(doctest)]

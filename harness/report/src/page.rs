@@ -19,6 +19,8 @@ pub struct Page {
     family: String,
     /// What it says first.
     pub answers: Answers,
+    /// Scenarios of the family without records: of them it says nothing.
+    pub not_run: Vec<String>,
     /// Scenarios that a published table of adjustments stands on: they are shown in pictures.
     pub illustrated: Vec<String>,
     /// What the page of a paper shows first, where it was written; all else then stands on pages of its own.
@@ -41,6 +43,7 @@ impl Page {
         Self {
             family: family.to_owned(),
             answers: Answers::default(),
+            not_run: Vec::new(),
             illustrated: Vec::new(),
             first_screen: None,
             predictions: None,
@@ -106,6 +109,15 @@ impl Page {
         self.pictures.extend(pictures);
     }
 
+    /// What this page lacks.
+    fn not_run(&self) -> String {
+        if self.not_run.is_empty() {
+            return String::new();
+        }
+        let names: Vec<String> = self.not_run.iter().map(|name| format!("`{name}`")).collect();
+        format!("**Not run**, so that nothing is said of them here: {}. `calibench run {}` runs all.\n\n", names.join(", "), self.family)
+    }
+
     /// The page with all that is beside it.
     pub fn composed(self) -> Composed {
         let legend = if self.scored { scores_section::legend() } else { String::new() };
@@ -116,6 +128,7 @@ impl Page {
         );
         let answer = self.answers.paragraph();
         let answer = if answer.is_empty() { answer } else { format!("{answer}\n\n") };
+        let answer = self.not_run() + &answer;
         let (counted, led) = (self.answers.counted(), self.answers.led());
         let whole = |title: &str, before: &str, body: &str| format!("# {title}\n\n{before}{}{}\n", contents(body), body.trim_end());
         let predicted = if self.predictions.is_some() {

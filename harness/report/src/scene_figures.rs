@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use calibench_model::{CornerPoint, Image, PixelPoint};
 use calibench_records::results::{MethodInfo, Outcome};
 
-use super::canvas::Canvas;
+use super::canvas::{COLOURS, Canvas, Mark};
 use super::figures::{Layer, MarkAt, Panel, Window, overview, panels};
 use super::load::Loaded;
 
@@ -40,6 +40,35 @@ pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
     match factor(image.width(), image.height()) {
         1 => whole(image, 1, &[layer], &marks, &labelled(targets)),
         factor => whole(&image.reduced(factor), factor, &[layer], &marks, &labelled(targets)),
+    }
+}
+
+/// How a point that was found is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// By its mark.
+    Plain,
+    /// With its name: the first points say which way the names run.
+    First,
+    /// With its name and what makes it doubtful.
+    Doubtful,
+}
+
+/// A photograph with the points that were found in it, each with its label and its look.
+pub fn found(image: &Image, points: &[(String, PixelPoint, Look)]) -> Canvas {
+    let layer = |name: &str, mark, colour| Layer { name: name.into(), mark, colour: COLOURS[colour], is_method: false };
+    let layers = [layer("found", Mark::Dot, 1), layer("the first ones", Mark::Square, 2), layer("in doubt", Mark::Diamond, 0)];
+    let of = |look: Look| match look {
+        Look::Plain => 0,
+        Look::First => 1,
+        Look::Doubtful => 2,
+    };
+    let marks: Vec<MarkAt> = points.iter().map(|(_, at, look)| MarkAt { layer: of(*look), at: *at }).collect();
+    let named = points.iter().filter(|(.., look)| *look != Look::Plain);
+    let labels: Vec<(String, PixelPoint)> = named.map(|(name, at, _)| (name.clone(), *at)).collect();
+    match factor(image.width(), image.height()) {
+        1 => whole(image, 1, &layers, &marks, &labels),
+        factor => whole(&image.reduced(factor), factor, &layers, &marks, &labels),
     }
 }
 

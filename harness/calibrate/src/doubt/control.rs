@@ -37,7 +37,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     // Seven of all coordinates are the frame's (six where distances give the scale), and a bend is a part of them.
     let frame = 7 - usize::from(!whole.distances.is_empty());
     let bends = whole.surfaces.iter().flat_map(|surface| surface.statuses).filter(|status| status.is_unknown()).count();
-    calibration.adjusted(&free, 3 * network.points.len() - frame - bends, || cause(&network, &free))
+    calibration.adjusted(&free, 3 * network.points.len() - frame - bends, || cause(&network, &free, bends > 0))
 }
 
 /// Every point free: where too few images see one, the network is not determined.
@@ -48,8 +48,8 @@ fn freed(calibration: &Calibration<'_>) -> Network {
     Network { points: points.collect(), surfaces: Vec::new(), datum: Datum::Inner, ..ended }
 }
 
-/// What the shifts of the points look like.
-fn cause(network: &Network, free: &Solution<'_>) -> String {
+/// What the shifts of the points look like; `is_bent`: a bend of the board is adjusted already.
+fn cause(network: &Network, free: &Solution<'_>, is_bent: bool) -> String {
     let shifts: Vec<Vector3<f64>> = network.points.iter().zip(free.points()).map(|(point, found)| found - point.position).collect();
     let off = off(free, &shifts);
     if let Some([a, b]) = swapped(network, free, &off) {
@@ -64,7 +64,9 @@ fn cause(network: &Network, free: &Solution<'_>) -> String {
         return stretch;
     }
     if is_along_normal(network, &shifts) {
-        return "the board is bent; try --board-shape bent or free".into();
+        let not_yet = "the board is bent; try --board-shape bent or free";
+        let already = "the board is bent otherwise than a surface of second order, which is allowed for; try --board-shape free";
+        return if is_bent { already } else { not_yet }.into();
     }
     let worst = (0..shifts.len()).max_by(|&a, &b| shifts[a].norm().total_cmp(&shifts[b].norm())).unwrap_or(0);
     format!(

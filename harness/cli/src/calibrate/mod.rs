@@ -13,17 +13,17 @@ use calibench_images::Reading;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
 use calibench_model::{ControlRow, CornerPoint, LostRows, Points};
-use calibench_photographs::{Chessboard, Corners, Photo, Reader};
+use calibench_photographs::{Corners, Photo, Reader};
 use calibench_report::calibration::{Pictured, scene_ply, summary, write_report};
 use calibench_report::json::CalibrationAnswer;
 use clap::Args;
 
 use super::context::{Context, finder};
 use super::convert::positive;
-use super::photos::AsRead;
+use super::photos::{AsRead, with_folders};
 use super::reading::Origin;
 use super::{inputs, output, reading};
-use crate::board::board_of;
+use crate::board::{HELP, board_of};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
@@ -38,14 +38,10 @@ use cameras::Cameras;
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Calibrate {
-    /// Photographs of a board, in place of --points and --control
-    #[arg(value_name = "PHOTO", requires = "pictured")]
+    /// Photographs of a board, or a folder of them, in place of --points and --control
+    #[arg(value_name = "PHOTO", requires = "board")]
     photos: Vec<PathBuf>,
-    /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
-    #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos", group = "pictured")]
-    chessboard: Option<Chessboard>,
-    /// The board: 9x6:25, charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, gridboard:5x7:40:10:DICT_6X6_250, circles:7x5:20, circles:10x10:20:10:20@r10c1, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml); lengths in object units
-    #[arg(long, value_name = "BOARD", value_parser = board_of, requires = "photos", group = "pictured")]
+    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP, requires = "photos")]
     board: Option<Board>,
     /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own
     #[arg(long, requires = "photos")]
@@ -155,7 +151,8 @@ struct Input {
 }
 
 impl Calibrate {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.photos = with_folders(&self.photos)?;
         if self.rig.is_asked() {
             return self.run_rig(context);
         }
@@ -203,7 +200,7 @@ impl Calibrate {
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
         let given = self.control.as_ref().or(self.approx.as_ref());
-        match (&self.points, given, self.board.or(self.chessboard.map(Board::from))) {
+        match (&self.points, given, self.board) {
             (Some(points), control, _) => {
                 self.read.without_photographs()?;
                 let PointFile { mut points, lost } = inputs::measured(points)?;

@@ -11,7 +11,6 @@ use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as fi
 use calibench_model::NamedCamera;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
-use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
 use calibench_report::json::JudgementAnswer;
 use calibench_report::judgement::{in_use as in_words, section, verdict};
@@ -19,9 +18,9 @@ use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
-use super::photos::AsRead;
+use super::photos::{AsRead, with_folders};
 use super::{output, reading};
-use crate::board::board_of;
+use crate::board::{HELP, board_of};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 use crate::same_camera::for_images;
@@ -32,9 +31,12 @@ mod photographs;
 
 use files::corner_file;
 
+/// How far a camera in use may be off, px RMS over the frame, where nothing else is said.
+const MARGIN: f64 = 1.0;
+
 #[derive(Args)]
 pub struct Judge {
-    /// Photographs of a board, all by one camera: at least six
+    /// Photographs of a board, or a folder of them, all by one camera: at least six
     #[arg(value_name = "PHOTO", required_unless_present = "points")]
     photos: Vec<PathBuf>,
     /// Points that were measured beforehand, in place of photographs: CSV with image,target,x,y; of a chessboard targets r1c1, r1c2, ... as `detect` and `control` name
@@ -44,16 +46,13 @@ pub struct Judge {
     /// Size of the images that --points are of, px
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "points", conflicts_with = "photos")]
     size: Option<ImageSize>,
-    /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
-    #[arg(long, value_name = "COLUMNSxROWS:SIDE", required_unless_present_any = ["board", "control"], conflicts_with_all = ["board", "control"])]
-    chessboard: Option<Chessboard>,
-    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, gridboard:5x7:40:10:DICT_6X6_250, circles:7x5:20, circles:10x10:20:10:20@r10c1, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml)
-    #[arg(long, value_name = "BOARD", value_parser = board_of, conflicts_with = "control")]
+    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP,
+          required_unless_present = "control", conflicts_with = "control")]
     board: Option<Board>,
     /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own
     #[arg(long, requires = "photos")]
     all: bool,
-    /// In place of a chessboard: points of known object coordinates, as of a house, whose names the files of --points use: CSV with target,X,Y,Z and, if known, sX,sY,sZ
+    /// In place of a board: points of known object coordinates, as of a house, whose names the files of --points use: CSV with target,X,Y,Z and, if known, sX,sY,sZ
     #[arg(long, value_name = "CSV", requires = "points")]
     control: Option<PathBuf>,
     #[command(flatten)]
@@ -80,10 +79,10 @@ pub struct Judge {
     /// The camera of --camera or --published took the images, too, if they have the same aspect and another size: it is taken as it is in theirs
     #[arg(long)]
     same_camera: bool,
-    /// Difference over the frame, px RMS, up to which --camera holds
-    #[arg(long, value_name = "PX", default_value_t = 1.0, requires = "camera", value_parser = positive, allow_negative_numbers = true)]
-    margin: f64,
-    /// How well the camera must be known over the frame, px: the standard deviation of the image of a point far away, RMS; beyond it the exit code is 3 [default: 1 % of the longer side, 5 px at most]
+    /// Difference over the frame, px RMS, up to which --camera holds [default: that of --limit, or else 1]
+    #[arg(long, value_name = "PX", requires = "camera", value_parser = positive, allow_negative_numbers = true)]
+    margin: Option<f64>,
+    /// How well the camera must be known over the frame, px: the standard deviation of the image of a point far away, RMS; beyond it the exit code is 3 [default: 1 % of the longer side, 5 px at most]. With --camera and without --margin: the difference up to which that camera holds, as for `diff`
     #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     limit: Option<f64>,
     /// How often the photographs are split into halves
@@ -100,7 +99,8 @@ pub struct Judge {
 }
 
 impl Judge {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.photos = with_folders(&self.photos)?;
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
         let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
@@ -119,7 +119,9 @@ impl Judge {
             published_sigma: published.as_ref().and_then(stated_sigma),
         };
         let rows = judge(&material, &options)?;
-        let limit_px = Some(self.limit.unwrap_or_else(|| usual_limit_px(size)));
+        // With a camera in use, which may differ by so much, --limit is of that unless --margin is.
+        let is_of_use = self.camera.is_some() && self.margin.is_none();
+        let limit_px = Some(self.limit.filter(|_| !is_of_use).unwrap_or_else(|| usual_limit_px(size)));
         let summary = Summary { limit_px, ..Summary::new(&rows, self.seed) };
         if let Some(folder) = folder {
             folder.replace(|folder| self.write(folder, (&material, &options, &doubts, reading), &rows, &summary))?;
@@ -152,11 +154,12 @@ impl Judge {
     fn in_use(&self, trusted: &Trusted<'_>) -> Option<InUse> {
         self.camera.as_ref()?;
         // Where the two cannot be compared over the frame the photographs cannot tell.
-        Some(trusted.in_use(self.margin).unwrap_or(InUse::unknown(self.margin)))
+        let margin = self.margin.or(self.limit).unwrap_or(MARGIN);
+        Some(trusted.in_use(margin).unwrap_or(InUse::unknown(margin)))
     }
 
     fn models(&self) -> Result<Vec<ModelChoice>, Failure> {
-        let of_board = self.pictured().is_some();
+        let of_board = self.board.is_some();
         let bent = |text: &str| text.ends_with(BENT);
         if let Some(text) = self.models.iter().find(|text| !of_board && bent(text)) {
             return Err(Failure::input(format!(
@@ -167,18 +170,13 @@ impl Judge {
         ModelChoice::parse_all(&texts).map_err(|(place, error)| Failure::input(format!("--model {}: {error}", texts[place])))
     }
 
-    /// The board that was photographed.
-    fn pictured(&self) -> Option<Board> {
-        self.board.or(self.chessboard.map(Board::from))
-    }
-
     /// The corners to judge by, measured here or read, and what is in doubt of where a board was found.
     fn material(&self, context: &Context<'_>) -> Result<(Material, Vec<String>, Reading), Failure> {
         if self.size.is_some() {
             self.read.without_photographs()?;
         }
         let read = |field, size| Ok((files::material(&self.points, field, size)?, Vec::new(), Reading::default()));
-        match (self.size, &self.control, self.pictured()) {
+        match (self.size, &self.control, self.board) {
             (Some(size), Some(control), _) => read(Field::Points(read_control(control)?), size),
             (Some(size), None, Some(board)) => read(field_of(board)?, size),
             (_, _, Some(board)) => self.measured(context, board),

@@ -75,7 +75,7 @@ impl Judge {
     }
 
     fn field(&self) -> String {
-        match (&self.control, self.pictured()) {
+        match (&self.control, self.board) {
             (Some(control), _) => format!("the points of {}", code(&control.display().to_string())),
             (None, Some(Board::Chessboard(Chessboard { columns, rows, square }))) => {
                 format!("a chessboard of {columns} x {rows} inner corners, squares of {square}")

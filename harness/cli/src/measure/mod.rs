@@ -7,18 +7,21 @@ use calibench_cameras::inputs_of;
 use calibench_exchange::{MeasuredRow, Outcome, write_measured};
 use calibench_measure::Configured;
 use calibench_measure::coverage::{all_busy, unmeasured};
+use calibench_model::boards::Board;
 use calibench_model::{Points, TargetKind};
 use calibench_photographs::points::{Measured, measure_points, photos_of};
+use calibench_photographs::{Finder, Reader};
 use calibench_report::json::{MeasurementAnswer, MeasurementCounts};
 use clap::Args;
 
-use crate::context::{Context, Pictured};
+use crate::board::{HELP, board_to_find};
+use crate::context::{Context, Pictured, finder};
 use crate::deliver::{As, answer, deliver};
 use crate::failure::Failure;
 use crate::inputs::read_measured;
 use crate::notes::say_notes;
 use crate::output;
-use crate::photos::AsRead;
+use crate::photos::{AsRead, with_folders};
 use crate::progress::Progress;
 
 mod eccentricity;
@@ -27,14 +30,16 @@ use eccentricity::Eccentricity;
 
 #[derive(Args)]
 pub struct Measure {
-    /// Photographs: PNG, JPEG, TIFF or PNM, 8 or 16 bits
+    /// Photographs, or a folder of them: PNG, JPEG, TIFF, PNM, BMP or WebP
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
     /// Approximate positions: CSV with image,target,x,y, and optionally sxx,sxy,syy and kind,axx,axy,ayx,ayy
-    #[arg(long, value_name = "CSV")]
-    points: PathBuf,
-    /// The method, as in forstner:window=15; several are measured one after the other. Kinds of targets before it limit it to these, as in disc+square=centroid
-    #[arg(short, long = "method", value_name = "METHOD", default_value = "forstner")]
+    #[arg(long, value_name = "CSV", required_unless_present = "board", conflicts_with = "board")]
+    points: Option<PathBuf>,
+    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_to_find, help = HELP)]
+    board: Option<Board>,
+    /// The method, as in forstner:window=15; several are measured one after the other. Kinds of targets before it limit it to these, as in disc+square=centroid [default: forstner; of a board as for `calibrate`]
+    #[arg(short, long = "method", value_name = "METHOD")]
     methods: Vec<String>,
     #[command(flatten)]
     read: AsRead,
@@ -48,21 +53,33 @@ pub struct Measure {
 }
 
 impl Measure {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = inputs_of(self.photos.iter().chain([&self.points]).chain(self.eccentricity.paths()));
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.photos = with_folders(&self.photos)?;
+        let inputs = inputs_of(self.photos.iter().chain(&self.points).chain(self.eccentricity.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
-        let methods = context.methods(&self.methods, Pictured::Photographs)?;
+        let finder = self.board.map(finder).transpose()?;
+        let usual = || vec![finder.as_ref().map_or("forstner", Finder::usual_method).to_owned()];
+        let asked = if self.methods.is_empty() { usual() } else { self.methods.clone() };
+        let methods = context.methods(&asked, Pictured::Photographs)?;
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
             return Err(Failure::input(format!("-m {}: unavailable: {why}", method.label)));
         }
-        let points = read_measured(&self.points)?;
+        let (points, reader, is_doubtful) = match (&self.points, &finder) {
+            (Some(points), _) => (read_measured(points)?, None, false),
+            (None, Some(finder)) => {
+                let reader = self.read.reader(&self.photos)?;
+                let (points, is_doubtful) = points_of(finder, &reader)?;
+                (points, Some(reader), is_doubtful)
+            }
+            (None, None) => return Err(Failure::input("expected --points or --board")),
+        };
         methods.iter().try_for_each(|method| has_kinds(method, &points))?;
         let kinds = || points.rows().filter_map(|row| row.start.kind);
         all_busy(&methods, kinds()).map_err(|gap| Failure::input(format!("-m: {gap}")))?;
         let nobodys = unmeasured(&methods, kinds());
         // What is wrong with the photographs' names is said before any is read.
         let photos = photos_of(&points, &self.photos)?;
-        let reader = self.read.reader(&self.photos)?;
+        let reader = reader.map_or_else(|| self.read.reader(&self.photos), Ok)?;
         let size = |image: &str| reader.sizes().get(photos[points.images().find(image)?]?).copied();
         let offsets = self.eccentricity.offsets(&points, size)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
@@ -90,8 +107,22 @@ impl Measure {
                 points.len()
             );
         });
-        Ok(())
+        if is_doubtful { Err(Failure::Doubt) } else { Ok(()) }
     }
+}
+
+/// The points of a board where it is found, and whether that is in doubt; says in which photographs it is not, and why.
+fn points_of(finder: &Finder, reader: &Reader) -> Result<(Points, bool), Failure> {
+    let found = finder.find_all(reader, &|| ())?;
+    for (path, sighting) in reader.photos().iter().zip(&found) {
+        sighting.why.iter().for_each(|why| say!("{}: {why}", path.display()));
+        sighting.doubts.iter().for_each(|doubt| say!("{}: in doubt: {doubt}", path.display()));
+    }
+    let points: Points = found.iter().flat_map(|sighting| &sighting.rows).collect();
+    if points.is_empty() {
+        return Err(Failure::input("no board was found; `calibench detect PHOTO --board unknown` says what board is there"));
+    }
+    Ok((points, found.iter().any(|sighting| !sighting.doubts.is_empty())))
 }
 
 /// One row for every method and point of its kinds, in the order given, less the eccentricity of each point where there is one.

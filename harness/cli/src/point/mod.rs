@@ -18,7 +18,7 @@ use crate::camera_files::ImagesFile;
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::output;
-use crate::photos::say_turns;
+use crate::photos::{say_turns, with_folders};
 use crate::progress::Progress;
 
 mod serve;
@@ -32,7 +32,7 @@ const LARGE: f64 = 150.0;
 
 #[derive(Args)]
 pub struct Point {
-    /// Photographs: PNG, JPEG, TIFF or PNM, 8 or 16 bits
+    /// Photographs, or a folder of them: PNG, JPEG, TIFF, PNM, BMP or WebP
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
     /// Control points: CSV with target,X,Y,Z; their names are offered in this order, and with --serve predicted where they must be
@@ -69,7 +69,8 @@ fn minutes(text: &str) -> Result<f64, String> {
 }
 
 impl Point {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.photos = with_folders(&self.photos)?;
         // clap does not say that an option needs another one where both exclude a third.
         let given = [
             ("-m", self.method.is_some()),

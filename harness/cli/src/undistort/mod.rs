@@ -15,11 +15,12 @@ use clap::{Args, ValueEnum};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::output;
+use crate::photos::with_folders;
 use views::Views;
 
 #[derive(Args)]
 pub struct Undistort {
-    /// Photographs of one camera (PNG, JPEG, TIFF or PNM, 8 or 16 bits, any channels), or one file of points: CSV with image,target,x,y
+    /// Photographs of one camera, or a folder of them (PNG, JPEG, TIFF, PNM, BMP or WebP, any channels), or one file of points: CSV with image,target,x,y
     #[arg(required = true, value_name = "PHOTO|CSV")]
     files: Vec<PathBuf>,
     /// The camera of the photographs: a file of any known format
@@ -108,7 +109,8 @@ fn is_table(path: &Path) -> bool {
 }
 
 impl Undistort {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.files = with_folders(&self.files)?;
         let target = self.target_file();
         let inputs = inputs_of(self.files.iter().chain([&self.camera]).chain(target.as_ref()));
         match self.files.as_slice() {

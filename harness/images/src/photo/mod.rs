@@ -6,6 +6,8 @@ mod container;
 mod dense;
 mod depth;
 mod filters;
+mod folder;
+mod foreign;
 pub mod grey;
 mod helped;
 pub(crate) mod jpeg;
@@ -28,6 +30,8 @@ pub use bands::encode_png;
 pub use budget::MOST_BYTES;
 pub use dense::encode_png_densely;
 pub use depth::{DeepLevels, Depth, read_with_levels};
+pub use folder::{PhotoFolder, natural};
+pub use foreign::Foreign;
 pub use levels::{Levels, read_levels};
 pub(crate) use rows::of_png;
 pub use turn::Turn;
@@ -50,12 +54,20 @@ pub enum PhotoError {
     #[error(transparent)]
     Output(#[from] io::Error),
     /// Its content.
-    #[error("{}: not an image that can be read: {source} (expected PNG, JPEG, TIFF or PNM)", path.display())]
+    #[error("{}: not an image that can be read: {source} (expected PNG, JPEG, TIFF, PNM, BMP or WebP)", path.display())]
     Content {
         /// The file.
         path: PathBuf,
         /// What the decoder says.
         source: ImageError,
+    },
+    /// A format that is not read.
+    #[error("{}: is {what}, which is not read; {}", path.display(), what.advice(path))]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        what: Foreign,
     },
     /// A part of the image is missing.
     #[error("{}: is cut short: the end mark of the JPEG is missing; expected a whole image, copy it again", path.display())]
@@ -65,9 +77,9 @@ pub enum PhotoError {
     },
     /// A TIFF, or a camera's raw file, which begins with a reduced copy of what it holds.
     #[error(
-        "{}: its first image has {} x {} px and is a thumbnail of another in the file, of {} x {} px; expected one image: develop a raw file, or export the page, \
-         as PNG or TIFF",
-        path.display(), size.0, size.1, of.0, of.1
+        "{}: its first image has {} x {} px and is a thumbnail of another in the file, of {} x {} px; expected one image: develop a raw file (`{}`), or export \
+         the page, as PNG or TIFF",
+        path.display(), size.0, size.1, of.0, of.1, Foreign::Raw.conversion(path)
     )]
     Thumbnail {
         /// The file.
@@ -169,7 +181,14 @@ pub(crate) fn open(path: &Path) -> Result<File, PhotoError> {
     if !about.is_file() {
         return Err(in_file(io::Error::other("is no regular file; photographs are read more than once: save it as a file first")));
     }
-    File::open(path).map_err(in_file)
+    let mut file = File::open(path).map_err(in_file)?;
+    let mut head = Vec::new();
+    Read::by_ref(&mut file).take(foreign::TELLING as u64).read_to_end(&mut head).map_err(in_file)?;
+    if let Some(what) = Foreign::of(&head) {
+        return Err(PhotoError::Foreign { path: path.to_owned(), what });
+    }
+    file.rewind().map_err(in_file)?;
+    Ok(file)
 }
 
 /// What the head of a photograph says of it.

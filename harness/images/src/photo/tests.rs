@@ -206,3 +206,34 @@ fn what_is_no_image_is_named() {
     assert!(matches!(read_photo(folder.path()), Err(PhotoError::File { .. })));
     assert!(matches!(read_photo(&folder.path().join("none.png")), Err(PhotoError::File { .. })));
 }
+
+#[test]
+fn bmp_and_webp_are_read_as_png_is() {
+    let levels: Vec<u8> = (0..12 * 7 * 3).map(|i| (i * 37 % 251) as u8).collect();
+    let (size, colour) = ((12, 7), ExtendedColorType::Rgb8);
+    let plain = parse(&png(&levels, size, colour, 1)).unwrap().image;
+    let mut bmp = Vec::new();
+    image::codecs::bmp::BmpEncoder::new(&mut bmp).encode(&levels, size.0, size.1, colour).unwrap();
+    assert_eq!(parse(&bmp).unwrap().image, plain);
+    let mut webp = Vec::new();
+    image::codecs::webp::WebPEncoder::new_lossless(&mut webp).encode(&levels, size.0, size.1, colour).unwrap();
+    assert_eq!(parse(&webp).unwrap().image, plain);
+    // Cut short, they are no images.
+    for file in [&bmp, &webp] {
+        assert!(parse(&file[..file.len() / 2]).is_err());
+    }
+}
+
+#[test]
+fn a_picture_that_is_not_read_says_what_converts_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("IMG_1.png");
+    std::fs::write(&path, b"\0\0\0\x18ftypheic\0\0\0\0mif1heic").unwrap();
+    for error in [head_of(&path).unwrap_err(), read_photo(&path).unwrap_err()] {
+        let said = error.to_string();
+        assert!(
+            said.contains("IMG_1.png: is a HEIC picture, which is not read; `heif-convert ") && said.contains("libheif-examples"),
+            "{said}"
+        );
+    }
+}

@@ -7,6 +7,9 @@ use calibench_model::escape;
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
+/// A probability that nobody takes for chance.
+const UNLIKELY: f64 = 1e-4;
+
 /// What stands first if there is doubt: the most likely cause. It holds names as their files have them.
 pub(super) fn headline(calibration: &Calibration<'_>) -> Option<String> {
     let doubts = calibration.doubts();
@@ -18,7 +21,7 @@ pub(super) fn fact(calibration: &Calibration<'_>) -> Option<String> {
     let one = |checked: &Checked| match &checked.verdict {
         Verdict::Untested(_) => format!("{} not tested", checked.subject.what()),
         Verdict::Sound(_) => format!("{} sound", checked.subject.what()),
-        Verdict::Slight(..) => format!("{} not quite sound", checked.subject.what()),
+        Verdict::Slight(..) => format!("{} found, too little to matter", checked.subject.what()),
         Verdict::Doubt(..) => format!("{} DOUBTFUL", checked.subject.what()),
     };
     let all: Vec<String> = calibration.checked.iter().map(one).collect();
@@ -47,8 +50,11 @@ pub(super) fn section(calibration: &Calibration<'_>) -> String {
     for checked in &calibration.checked {
         let (finding, verdict) = match &checked.verdict {
             Verdict::Untested(why) => (None, format!("not tested: {why}")),
+            Verdict::Sound(finding) if finding.p < UNLIKELY => {
+                (Some(finding), "sound: another cause explains what was found, or it is rounding".to_owned())
+            }
             Verdict::Sound(finding) => (Some(finding), "sound".to_owned()),
-            Verdict::Slight(finding, cause) => (Some(finding), format!("{}; it does not count", escape::markdown(cause))),
+            Verdict::Slight(finding, cause) => (Some(finding), format!("{}; too little to matter", escape::markdown(cause))),
             Verdict::Doubt(finding, cause) => (Some(finding), format!("**{}**", escape::markdown(cause))),
         };
         let (p, moves) = finding.map_or_else(Default::default, cells);
@@ -62,6 +68,6 @@ pub(super) fn section(calibration: &Calibration<'_>) -> String {
 }
 
 fn cells(finding: &Finding) -> (String, String) {
-    let p = if finding.p < 1e-4 { "< 0.0001".to_owned() } else { format!("{:.4}", finding.p) };
+    let p = if finding.p < UNLIKELY { "< 0.0001".to_owned() } else { format!("{:.4}", finding.p) };
     (p, finding.moves.map_or(String::new(), plain))
 }

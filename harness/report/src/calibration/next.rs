@@ -96,9 +96,9 @@ fn table(next: &Next, size: ImageSize) -> MarkdownTable {
 fn limits(next: &Next) -> String {
     let whole = if next.whole { "; all control is in view, as in the photographs so far" } else { "" };
     format!(
-        "`middle` is that of the control in the frame, `tilt` that of the control against the image, `nearer` the side of it that is, `distance` that of its middle along \
-         the camera's axis, in object units, `then` the standard deviation with the photograph. \
-         It is supposed that the model is right, that points are measured as precisely as so far, and that the distance is one of those so far{whole}."
+        "`middle`: where in the frame the middle of the control points is to be. `tilt`: the angle between their plane and the image. `nearer`: the side of them that is \
+         nearer to the camera. `distance`: how far their middle is away, along the camera's axis, in object units. `then`: the standard deviation with this photograph added. \
+         Taken for granted: the model is right, points are measured as precisely as so far, and the distance is one of those so far{whole}."
     )
 }
 

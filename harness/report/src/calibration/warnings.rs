@@ -10,6 +10,9 @@ use crate::plain;
 /// Times that the images may disagree with the standard deviations: from twenty groups a ratio is known to a sixth.
 const OPTIMISTIC: f64 = 1.5;
 
+/// The status of a photograph that is the same as another one.
+const COPY: &str = "copy";
+
 /// What a user must know.
 pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
@@ -50,10 +53,7 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     if weighted > 0 {
         warnings.push(format!("{weighted} image points have less weight (Huber)"));
     }
-    let lost = calibration.prepared.unmeasured.len();
-    if lost > 0 {
-        warnings.push(format!("{lost} targets were not measured: the method rejected them, or their board was not found"));
-    }
+    warnings.extend(lost(calibration.prepared.unmeasured.iter().map(|[_, target, status, _]| (target, status))));
     let far = &calibration.prepared.far;
     if !far.is_empty() {
         let (count, names) = (far.len(), calibench_calibrate::few(far));
@@ -64,6 +64,33 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
     }
     warnings
+}
+
+/// What was not measured, by target and status: points that a method refused, photographs in which no board was found, and those that are copies.
+fn lost<'t>(rows: impl Iterator<Item = (&'t str, &'t str)>) -> Vec<String> {
+    let (mut points, mut without, mut copies) = (0, 0, 0);
+    for (target, status) in rows {
+        match (target, status) {
+            ("", COPY) => copies += 1,
+            ("", _) => without += 1,
+            _ => points += 1,
+        }
+    }
+    let count = |count: usize, one: &str, many: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        count => Some(format!("{count} {many}")),
+    };
+    let said = [
+        count(points, "point was not measured: the method rejected it", "points were not measured: the method rejected them"),
+        count(
+            without,
+            "photograph shows no board that was found, and takes no part",
+            "photographs show no board that was found, and take no part",
+        ),
+        count(copies, "photograph is a copy of another one, and takes no part", "photographs are copies of others, and take no part"),
+    ];
+    said.into_iter().flatten().collect()
 }
 
 /// The image point that was left out and is off most.
@@ -100,7 +127,7 @@ fn half(calibration: &Calibration<'_>) -> Option<String> {
     let none = lost.iter().filter(|image| !seen.iter().any(|seen| seen == *image)).count();
     (none > seen.len()).then(|| {
         format!(
-            "the board was found in fewer than half of the photographs, {} of {}: is its size right (--chessboard)?",
+            "the board was found in fewer than half of the photographs, {} of {}: are its counts right (--board)?",
             seen.len(),
             seen.len() + none
         )
@@ -129,4 +156,25 @@ fn weights(calibration: &Calibration<'_>) -> Option<String> {
             plain(sigma * sigma0)
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_and_photographs_are_counted_apart() {
+        let said = |rows: &[(&'static str, &'static str)]| lost(rows.iter().copied());
+        assert_eq!(said(&[]), Vec::<String>::new());
+        assert_eq!(said(&[("r1c1", "rejected")]), ["1 point was not measured: the method rejected it"]);
+        let rows = [("", "not_found"), ("r1c1", "rejected"), ("r1c2", "rejected"), ("", COPY), ("", "not_found")];
+        assert_eq!(
+            said(&rows),
+            [
+                "2 points were not measured: the method rejected them",
+                "2 photographs show no board that was found, and take no part",
+                "1 photograph is a copy of another one, and takes no part",
+            ]
+        );
+    }
 }

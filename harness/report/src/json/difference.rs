@@ -30,6 +30,16 @@ pub struct DifferenceAnswer {
     not_comparable: f64,
     /// What the differences are on an object; null without a distance.
     on_object: Option<OnObject>,
+    /// Whether the differences are within a limit; null without one.
+    limit: Option<Limit>,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Limit {
+    /// The limit of the root mean square over the frame, px.
+    rms_px: f64,
+    /// Whether it is kept. Where it is not the exit code is 1.
+    is_kept: bool,
 }
 
 /// The differences in a part of the frame.
@@ -101,6 +111,13 @@ impl DifferenceAnswer {
             compensated: found.compensated.as_ref().map(remaining),
             not_comparable: found.not_comparable,
             on_object: distance.map(on_object),
+            limit: None,
         }
+    }
+
+    /// It, with a limit of the root mean square over the frame, px.
+    #[must_use]
+    pub fn with_limit(self, limit: Option<f64>, rms_px: f64) -> Self {
+        Self { limit: limit.map(|limit| Limit { rms_px: limit, is_kept: rms_px <= limit }), ..self }
     }
 }

@@ -5,17 +5,19 @@ use schemars::schema_for;
 use serde_json::{Value, json};
 
 use super::{
-    AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, MeasurementAnswer, RigAnswer,
+    AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
+    MeasurementAnswer, RigAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 8] = [
+pub const COMMANDS: [&str; 9] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
     ConversionAnswer::COMMAND,
     CameraFileAnswer::COMMAND,
     DifferenceAnswer::COMMAND,
+    ListAnswer::COMMAND,
     Measured::COMMAND,
     AcceptanceAnswer::COMMAND,
 ];
@@ -32,6 +34,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
         CameraFileAnswer::COMMAND => of::<CameraFileAnswer>(),
         DifferenceAnswer::COMMAND => of::<DifferenceAnswer>(),
+        ListAnswer::COMMAND => of::<ListAnswer>(),
         Measured::COMMAND => of::<Measured>(),
         AcceptanceAnswer::COMMAND => of::<AcceptanceAnswer>(),
         _ => return None,

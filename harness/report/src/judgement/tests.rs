@@ -218,7 +218,10 @@ fn sigmas_are_enlarged_where_halves_contradict_them() {
     for (p, word) in [(HONEST, "p = 0.010"), (0.5, "p = 0.500")] {
         cell(&mut summary, "m", "b").split = split(p);
         let found = format!("2.50 times what the sigmas say over the frame, 1.50 times mode by mode (9 splits, {word})");
-        says(&summary, &format!(" Halves of the photographs differ by {found}: nothing is to be said against the sigmas.\n"));
+        says(
+            &summary,
+            &format!(" Halves of the photographs differ by {found}: no more than chance allows, so the sigmas may be believed.\n"),
+        );
     }
     cell(&mut summary, "m", "b").split = split(0.009);
     says(&summary, "(9 splits, p = 0.009): **the sigmas are too small**. Enlarged by 2.50: 0.0500 px and 0.200 px.\n");

@@ -200,7 +200,7 @@ fn how_far(trusted: &Trusted<'_>) -> Option<String> {
             plain(factor * corner)
         )
     } else {
-        format!(" Halves of the photographs differ by {found}: nothing is to be said against the sigmas.")
+        format!(" Halves of the photographs differ by {found}: no more than chance allows, so the sigmas may be believed.")
     });
     Some(text)
 }

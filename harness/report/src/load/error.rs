@@ -11,6 +11,14 @@ pub enum LoadError {
     /// There are none.
     #[error("no records of `{0}`: run it first with `calibench run {0}`")]
     None(String),
+    /// There are none of any scenario of a family.
+    #[error("no scenario of `{family}` was run: `calibench run {family}` runs {}", those(scenarios))]
+    NotRun {
+        /// The family.
+        family: String,
+        /// Its scenarios.
+        scenarios: Vec<String>,
+    },
     /// A file of a run that cannot be read.
     #[error(transparent)]
     Stored(#[from] StoredError),
@@ -30,4 +38,13 @@ pub enum LoadError {
         /// Line and mistake.
         source: serde_json::Error,
     },
+}
+
+/// A scenario, or how many there are with one of them.
+fn those(scenarios: &[String]) -> String {
+    match scenarios {
+        [] => "none, for it has no scenario".into(),
+        [one] => format!("`{one}`"),
+        [one, ..] => format!("all {}, `calibench run {one}` one of them", scenarios.len()),
+    }
 }

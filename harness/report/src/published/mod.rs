@@ -31,7 +31,7 @@ pub(crate) use range::Range;
 pub(crate) use read::PREDICTIONS;
 pub use read::{papers, tables};
 pub use schema::schema;
-pub(crate) use section::{findings, section, verdicts, without_records};
+pub(crate) use section::{findings, not_run, section, verdicts, without_records};
 pub(crate) use sweep::{section as swept, verdicts as swept_verdicts};
 pub(crate) use trials::{Trials, ratio};
 pub use verdict::{Printed, Tally, Verdict};

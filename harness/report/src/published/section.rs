@@ -123,6 +123,11 @@ pub fn without_records(table: &Table) -> Section {
     Section::of_nothing(head(table) + &no_adjustments(table))
 }
 
+/// The section of a table that takes figures of a scenario that was not run.
+pub fn not_run(table: &Table, scenario: &str) -> Section {
+    Section::of_nothing(format!("{}There are no records of `{scenario}`: run it with `calibench run {scenario}`.\n\n", head(table)))
+}
+
 fn no_adjustments(table: &Table) -> String {
     format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario)
 }

@@ -65,7 +65,7 @@ fn what_is_missing_or_broken_is_named_with_its_path() {
     let message = family.message();
     assert!(message.contains("records.csv: records of an older version") && message.contains("run the scenario again"), "{message}");
     std::fs::remove_file(older).unwrap();
-    insta::assert_snapshot!(family.message(), @"no records of `small/scene`: run it first with `calibench run small/scene`");
+    insta::assert_snapshot!(family.message(), @"no scenario of `small` was run: `calibench run small` runs `small/scene`");
 }
 
 const MORE: &str = r#"

@@ -11,7 +11,7 @@ use calibench_report::published;
 use clap::ValueEnum;
 
 use super::context::Context;
-use crate::deliver::print;
+use crate::deliver::{As, answer, print};
 use crate::failure::{Failure, project_failure};
 use crate::peers::peers;
 
@@ -36,7 +36,12 @@ pub enum What {
     Peers,
 }
 
-pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
+mod items;
+
+pub fn list(context: &Context<'_>, what: What, answered: As) -> Result<(), Failure> {
+    if answered.json {
+        return answer(&items::items(context, what)?);
+    }
     print(&match what {
         What::Scenarios => scenarios(context)?,
         What::Methods => methods(context)?,

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use calibench_cameras::inputs_of;
 use calibench_exchange::write_points;
-use calibench_measure::Board as Counts;
+use calibench_files::{Inputs, OutputFolder};
 use calibench_model::boards::Board;
 use calibench_model::{PointRef, PointRow};
 use calibench_photographs::coded::{Coded, recognise_coded};
 use calibench_photographs::names::once;
 use calibench_photographs::unknown::{Shown, identify, shown, with_lengths};
-use calibench_photographs::{Chessboard, Identified, Reader};
+use calibench_photographs::{Identified, Reader};
 use calibench_recognise::{Classifier, NotRecognised, Recogniser};
 use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject, ViewsSubject};
@@ -18,25 +18,27 @@ use clap::{Args, ValueEnum};
 
 use super::context::{Context, finder};
 use super::output;
-use super::photos::AsRead;
+use super::photos::{AsRead, with_folders};
 use super::progress::Progress;
-use crate::board::{Asked, board_or_unknown};
+use crate::board::{Asked, HELP_OR_UNKNOWN, board_or_unknown};
 use crate::deliver::{deliver, print};
 use crate::failure::Failure;
+
+mod doubtful;
+mod draw;
+
+use draw::Drawn;
 
 /// So many photographs in which a board was not found are asked what they show.
 const LOOKED_AT: usize = 3;
 
 #[derive(Args)]
 pub struct Detect {
-    /// Photographs: PNG, JPEG, TIFF or PNM, 8 or 16 bits
+    /// Photographs, or a folder of them: PNG, JPEG, TIFF, PNM, BMP or WebP
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
-    /// The chessboard's inner corners, as in 9x6
-    #[arg(long, value_name = "COLUMNSxROWS", required_unless_present_any = ["board", "testfield"], conflicts_with_all = ["board", "testfield"])]
-    chessboard: Option<Counts>,
-    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, gridboard:5x7:40:10:DICT_6X6_250, circles:7x5:20, circles:10x10:20:10:20@r10c1, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml); or `unknown`: what board is there, and by which words is it found?
-    #[arg(long, value_name = "BOARD", value_parser = board_or_unknown, conflicts_with = "testfield")]
+    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_or_unknown, help = HELP_OR_UNKNOWN,
+          required_unless_present = "testfield", conflicts_with = "testfield")]
     board: Option<Asked>,
     /// Each of several such boards in a photograph, from the left: its points stand under the view PHOTO#1, PHOTO#2, ..., which `measure` and `calibrate` take as an image with a pose of its own
     #[arg(long, conflicts_with = "testfield")]
@@ -45,8 +47,11 @@ pub struct Detect {
     #[arg(long, value_name = "SCENARIO")]
     testfield: Option<String>,
     /// What tells the shapes of a coded field's targets apart
-    #[arg(long, value_enum, default_value_t, conflicts_with_all = ["board", "chessboard"])]
+    #[arg(long, value_enum, default_value_t, conflicts_with = "board")]
     classifier: Shapes,
+    /// Folder for the photographs with what was found drawn on them: the first points and those in doubt with their names; of one that is there, only what calibench wrote is replaced
+    #[arg(long, value_name = "DIR")]
+    draw: Option<PathBuf>,
     #[command(flatten)]
     read: AsRead,
     /// Where the points go [default: standard output]
@@ -65,18 +70,20 @@ enum Shapes {
 }
 
 impl Detect {
-    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let chessboard = self.chessboard.map(|board| Asked::Board(Board::from(Chessboard { board, side: 1.0 })));
-        match (&self.testfield, self.board.or(chessboard)) {
+    pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
+        self.photos = with_folders(&self.photos)?;
+        match (&self.testfield, self.board) {
             (Some(name), _) => self.field(context, name),
             (None, Some(Asked::Board(board))) => self.board(context, board),
             (None, Some(Asked::Unknown)) => self.unknown(context),
-            (None, None) => Err(Failure::input("expected --board, --chessboard or --testfield")),
+            (None, None) => Err(Failure::input("expected --board or --testfield")),
         }
     }
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
-        let output = output::table("-o", self.output.as_deref(), &inputs_of(&self.photos))?;
+        let inputs = inputs_of(&self.photos);
+        let output = output::table("-o", self.output.as_deref(), &inputs)?;
+        let draw = self.draw_into(&inputs)?;
         let finder = finder(board)?.of_each(self.all);
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
@@ -95,6 +102,13 @@ impl Detect {
             doubtful |= !sighting.doubts.is_empty();
         }
         say_several(self.all, found.iter().any(|sighting| !sighting.boards.is_empty()));
+        if let Some(folder) = draw {
+            let drawn: Vec<Drawn<'_>> =
+                found.iter().map(|sighting| Drawn { rows: sighting.rows.iter().collect(), why: sighting.why.clone() }).collect();
+            let said = draw::draw(&folder, &reader, &drawn, &finder.control())?;
+            said.iter().for_each(|line| say!("{line}"));
+            doubtful |= !said.is_empty();
+        }
         if seen == 0 {
             return Err(Failure::input(format!(
                 "no board was found; expected one as it was described (of a chessboard all inner corners visible, counted as COLUMNSxROWS){}",
@@ -105,11 +119,16 @@ impl Detect {
         if doubtful { Err(Failure::Doubt) } else { Ok(()) }
     }
 
+    /// The folder of --draw, if one is named.
+    fn draw_into(&self, inputs: &Inputs) -> Result<Option<OutputFolder>, Failure> {
+        self.draw.as_deref().map(|path| output::folder("--draw", path, inputs, ("detect", None))).transpose()
+    }
+
     /// What board is there, and by which words it is found.
     fn unknown(&self, context: &Context<'_>) -> Result<(), Failure> {
-        if self.output.is_some() || self.all {
+        if self.output.is_some() || self.all || self.draw.is_some() {
             return Err(Failure::input(
-                "--board unknown names the board and has no points: leave -o and --all out, then ask for the board by its words",
+                "--board unknown names the board and has no points: leave -o, --all and --draw out, then ask for the board by its words",
             ));
         }
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
@@ -135,6 +154,7 @@ impl Detect {
         let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
         let read = inputs_of(self.photos.iter().cloned().chain(file));
         let output = output::table("-o", self.output.as_deref(), &read)?;
+        let draw = self.draw_into(&read)?;
         let subject = views(&scenario)?;
         let classifier = match self.classifier {
             Shapes::Modern => Classifier::Modern,
@@ -144,13 +164,23 @@ impl Detect {
             .map_err(|error| Failure::input(format!("--testfield {name}: {error}; its [testfield] must have kind = \"coded\"")))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
-        let found = recognise_coded(&self.read.reader(&self.photos)?, &subject.field, &recogniser, &|| progress.step())?;
+        let reader = self.read.reader(&self.photos)?;
+        let found = recognise_coded(&reader, &subject.field, &recogniser, &|| progress.step())?;
         let rows: Vec<&PointRow> = found.iter().flatten().flat_map(|coded| &coded.rows).collect();
         let seen = found.iter().flatten().count();
         progress.finish(&format!("the field was recognised in {seen} of {} photographs, {} targets", found.len(), rows.len()));
         self.photos.iter().zip(&found).filter_map(|(path, found)| Some((path, remark(found)?))).for_each(|(path, remark)| {
             say!("{}: {remark}", path.display());
         });
+        if let Some(folder) = draw {
+            let one = |found: &Result<Coded, NotRecognised>| match found {
+                Ok(coded) => Drawn { rows: coded.rows.iter().collect(), why: None },
+                Err(why) => Drawn { rows: Vec::new(), why: Some(why.to_string()) },
+            };
+            // What is not flat has no neighbours that say where a target must be.
+            let drawn: Vec<Drawn<'_>> = found.iter().map(one).collect();
+            draw::draw(&folder, &reader, &drawn, &[])?;
+        }
         if rows.is_empty() {
             return Err(Failure::input(format!(
                 "no target was recognised; expected photographs of the field of `{}` that show at least one whole square with its lines",
