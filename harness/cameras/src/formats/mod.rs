@@ -15,6 +15,7 @@ mod metashape_cameras;
 mod micmac;
 pub(super) mod mrcal;
 mod nerfstudio;
+mod numpy;
 mod opencv_json;
 mod opencv_xml;
 mod opencv_yaml;
@@ -50,6 +51,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &opencv_yaml::FORMAT,
     &opencv_xml::FORMAT,
     &opencv_json::FORMAT,
+    &numpy::FORMAT,
     &metashape_calibration::FORMAT,
     &metashape_cameras::FORMAT,
     &photoscan_cameras::FORMAT,

@@ -31,8 +31,15 @@ const OURS: &str = "format = \"calibench-camera\"\nversion = 1\nmodel = \"photog
     [interior_orientation]\nc_mm = 20.0\nx0_mm = 0.1\ny0_mm = 0.2\n";
 const ALL: [&str; 9] = [YAML, OPENCV, METASHAPE, OLD, DOCUMENT, CAM, INPHO, PARAMETERS, OURS];
 
-const SIZE: ReadOptions =
-    ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, lens: None, from: None, ignore: Vec::new() };
+const SIZE: ReadOptions = ReadOptions {
+    size: Some(ImageSize { width: 640, height: 480 }),
+    fisheye: None,
+    lens: None,
+    from: None,
+    ignore: Vec::new(),
+    matrix: None,
+    distortion: None,
+};
 
 #[test]
 fn the_samples_are_read() {

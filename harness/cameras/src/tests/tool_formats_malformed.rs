@@ -5,8 +5,15 @@ use calibench_model::camera::ImageSize;
 use super::super::{ReadOptions, parse_camera};
 use super::read_with;
 
-const SIZE: ReadOptions =
-    ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, lens: None, from: None, ignore: Vec::new() };
+const SIZE: ReadOptions = ReadOptions {
+    size: Some(ImageSize { width: 640, height: 480 }),
+    fisheye: None,
+    lens: None,
+    from: None,
+    ignore: Vec::new(),
+    matrix: None,
+    distortion: None,
+};
 
 const COLMAP: &str = "# Camera list\n1 OPENCV 640 480 500 501 320 240 -0.1 0.02 1e-3 2e-3\n2 PINHOLE 640 480 500 501 320 240\n";
 const KAPTURE: &str = "# kapture format: 1.1\ngps, , gnss, EPSG:4326\ncam, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\n";
@@ -77,8 +84,15 @@ fn the_samples_are_read_as_what_they_are() {
             assert_eq!(file.format.name, format, "{text}");
         }
         // A size that contradicts the file is refused, one that the file leaves open is asked for.
-        let other =
-            ReadOptions { size: Some(ImageSize { width: 641, height: 480 }), fisheye: None, lens: None, from: None, ignore: Vec::new() };
+        let other = ReadOptions {
+            size: Some(ImageSize { width: 641, height: 480 }),
+            fisheye: None,
+            lens: None,
+            from: None,
+            ignore: Vec::new(),
+            matrix: None,
+            distortion: None,
+        };
         let states_size = super::super::format_named(format).unwrap().states_size;
         assert_eq!(read_with(text, other).is_err(), states_size, "{format}");
         assert_eq!(read_with(text, ReadOptions::default()).is_ok(), states_size, "{format}");
