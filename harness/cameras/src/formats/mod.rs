@@ -10,6 +10,7 @@ pub(super) mod colmap;
 pub(super) mod colmap_bin;
 mod kalibr;
 mod kapture;
+mod lensfun;
 mod metashape_calibration;
 mod metashape_cameras;
 mod micmac;
@@ -75,6 +76,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &bundler::FORMAT,
     &bal::FORMAT,
     &caltech::FORMAT,
+    &lensfun::FORMAT,
 ];
 
 /// The format called `name`.
