@@ -22,6 +22,7 @@ mod opencv_xml;
 mod opencv_yaml;
 mod openmvg;
 mod opensfm;
+mod panotools;
 mod photogrammetric;
 mod photoscan_cameras;
 mod pix4d_cam;
@@ -77,6 +78,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &bal::FORMAT,
     &caltech::FORMAT,
     &lensfun::FORMAT,
+    &panotools::FORMAT,
 ];
 
 /// The format called `name`.

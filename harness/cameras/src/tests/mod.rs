@@ -8,6 +8,7 @@ mod malformed;
 mod numpy;
 mod other_names;
 mod own_format;
+mod panorama;
 mod reality_scan;
 mod recognised;
 mod round_trip;
