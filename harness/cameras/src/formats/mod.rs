@@ -1,5 +1,6 @@
 //! The camera files that are known: one file a format. A new one is its file and its two lines here.
 
+mod anipose;
 mod bal;
 mod basalt;
 mod bentley;
@@ -54,6 +55,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &opencv_xml::FORMAT,
     &opencv_json::FORMAT,
     &numpy::FORMAT,
+    &anipose::FORMAT,
     &metashape_calibration::FORMAT,
     &metashape_cameras::FORMAT,
     &photoscan_cameras::FORMAT,

@@ -1,5 +1,6 @@
 //! Camera files, read and written.
 
+mod anipose;
 mod any_model;
 mod colmap_files;
 mod encodings;
