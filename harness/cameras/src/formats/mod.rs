@@ -9,6 +9,7 @@ mod caltech;
 mod camodocal;
 pub(super) mod colmap;
 pub(super) mod colmap_bin;
+mod gyroflow;
 mod kalibr;
 mod kapture;
 mod lensfun;
@@ -81,6 +82,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &caltech::FORMAT,
     &lensfun::FORMAT,
     &panotools::FORMAT,
+    &gyroflow::FORMAT,
 ];
 
 /// The format called `name`.
