@@ -13,6 +13,7 @@ mod gyroflow;
 mod kalibr;
 mod kapture;
 mod lensfun;
+mod matlab;
 mod metashape_calibration;
 mod metashape_cameras;
 mod micmac;
@@ -83,6 +84,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &lensfun::FORMAT,
     &panotools::FORMAT,
     &gyroflow::FORMAT,
+    &matlab::FORMAT,
 ];
 
 /// The format called `name`.
