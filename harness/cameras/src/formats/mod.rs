@@ -37,6 +37,7 @@ mod reality_scan_csv;
 mod ros;
 mod ros_message;
 mod theia;
+mod usd;
 
 /// The worked example of CONTRIBUTING, linked from `examples/`.
 #[cfg(test)]
@@ -85,6 +86,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &panotools::FORMAT,
     &gyroflow::FORMAT,
     &matlab::FORMAT,
+    &usd::FORMAT,
 ];
 
 /// The format called `name`.

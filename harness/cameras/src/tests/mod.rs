@@ -12,6 +12,7 @@ mod own_format;
 mod panorama;
 mod reality_scan;
 mod recognised;
+mod renderers;
 mod round_trip;
 mod same_camera;
 mod splines;
