@@ -19,6 +19,7 @@ mod splines;
 mod spreads;
 mod tool_formats;
 mod tool_formats_malformed;
+mod unknown;
 mod unknown_keys;
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
