@@ -9,11 +9,15 @@ use std::process::Command;
 mod test_data;
 
 /// Packages by the name of their cfg; the last two are Debian's.
-const PEERS: [(&str, &str); 6] = [
+const PEERS: [(&str, &str); 10] = [
     ("peer_pycolmap", "pycolmap"),
     ("peer_kapture", "kapture"),
     ("peer_opencv", "cv2"),
     ("peer_theia", "pytheia"),
+    ("peer_anipose", "aniposelib"),
+    ("peer_caliscope", "caliscope"),
+    ("peer_lensfun", "lensfunpy"),
+    ("peer_usd", "pxr"),
     ("peer_mrcal", "mrcal"),
     ("peer_ros", "camera_calibration_parsers"),
 ];
@@ -39,10 +43,14 @@ fn main() {
     let own = folder.as_deref().and_then(packages);
     for (index, (name, package)) in PEERS.into_iter().enumerate() {
         println!("cargo::rustc-check-cfg=cfg({name})");
-        let place = if index < 4 { own.clone() } else { folder.as_ref().map(|_| PathBuf::from(SYSTEM)) };
+        let place = if index < 8 { own.clone() } else { folder.as_ref().map(|_| PathBuf::from(SYSTEM)) };
         if place.is_some_and(|place| place.join(package).exists()) {
             println!("cargo::rustc-cfg={name}");
         }
+    }
+    println!("cargo::rustc-check-cfg=cfg(peer_hugin)");
+    if folder.is_some() && Path::new("/usr/bin/pano_trafo").exists() {
+        println!("cargo::rustc-cfg=peer_hugin");
     }
     if let Some(folder) = &folder {
         // Not the folder: Python writes into it.

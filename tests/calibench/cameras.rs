@@ -101,7 +101,7 @@ fn bad_input_is_named() {
     std::fs::write(folder.path().join("small.yml"), CAMERA.replace("1600", "1500")).unwrap();
     for (arguments, expected) in [
         (&["camera", "none.yml"][..], "none.yml"),
-        (&["camera", "text"], "no camera file that is known; tried"),
+        (&["camera", "text"], "no camera file that is known: text that begins with `no camera`; no reader comes near"),
         (&["camera", "short.yml"], "short.yml"),
         (&["convert", "camera.yml", "--to", "metashap"], "did you mean `metashape`?"),
         (&["convert", "camera.yml", "--to", "opencv7"], "no such target"),

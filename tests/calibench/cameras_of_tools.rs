@@ -29,6 +29,13 @@ fn every_tool_s_file_is_written_and_read_again() {
         ("bentley", true),
         ("caltech", true),
         ("micmac", true),
+        ("numpy", true),
+        ("anipose", true),
+        ("gyroflow", true),
+        ("matlab", true),
+        ("usd", true),
+        ("lensfun", false),
+        ("panotools", false),
         ("bundler", false),
         ("bal", false),
     ] {

@@ -2,6 +2,8 @@
 
 #![cfg_attr(not(all(peer_pycolmap, peer_kapture, peer_opencv, peer_mrcal, peer_ros, peer_theia)), allow(dead_code, unused_imports))]
 
+mod asked_for;
+
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -75,7 +77,12 @@ fn sights(camera: &Camera) -> (Vec<[f64; 3]>, Vec<PixelPoint>) {
 
 /// The pixels that a tool finds for points by a file.
 fn asked(python: &str, tool: &str, file: &Path, points: &[[f64; 3]], variables: &[(&str, &str)]) -> Vec<[f64; 2]> {
-    let script = root().join("tests/peers/project.py");
+    answered(python, "project.py", tool, file, points, variables)
+}
+
+/// What one of the scripts answers of a tool and a file.
+fn answered(python: &str, script: &str, tool: &str, file: &Path, points: &[[f64; 3]], variables: &[(&str, &str)]) -> Vec<[f64; 2]> {
+    let script = root().join("tests/peers").join(script);
     let mut child = Command::new(python)
         .args([script.as_os_str(), tool.as_ref(), file.as_os_str()])
         .envs(variables.iter().copied())
@@ -86,7 +93,7 @@ fn asked(python: &str, tool: &str, file: &Path, points: &[[f64; 3]], variables: 
         .unwrap_or_else(|error| panic!("{python}: {error}"));
     child.stdin.take().unwrap().write_all(serde_json::to_string(points).unwrap().as_bytes()).unwrap();
     let output = child.wait_with_output().unwrap();
-    assert!(output.status.success(), "{tool} does not read {}: {}", file.display(), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{tool} fails at {}: {}", file.display(), String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 

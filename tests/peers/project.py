@@ -63,6 +63,100 @@ def opencv(path, points):
     return pixels.reshape(-1, 2)
 
 
+def projected(matrix, distortion, fisheye, points):
+    """OpenCV's projection of a camera matrix and coefficients."""
+    import cv2
+
+    zero, points = np.zeros(3), points.reshape(-1, 1, 3)
+    project = cv2.fisheye.projectPoints if fisheye else cv2.projectPoints
+    return project(points, zero, zero, np.asarray(matrix, float), np.asarray(distortion, float))[0].reshape(-1, 2)
+
+
+def numpy_archive(path, points):
+    """numpy.load, then OpenCV's projection."""
+    import cv2
+
+    with np.load(path) as arrays:
+        matrix, distortion, fisheye = (arrays[name] for name in ("camera_matrix", "dist_coeffs", "fisheye_model"))
+        if "xi" in arrays:
+            zero = np.zeros(3)
+            return cv2.omnidir.projectPoints(points.reshape(-1, 1, 3), zero, zero, matrix, float(arrays["xi"]), distortion)[0].reshape(-1, 2)
+    return projected(matrix, distortion, bool(fisheye), points)
+
+
+def anipose(path, points):
+    """aniposelib loads the group and projects, in the axes of the first camera."""
+    from aniposelib.cameras import CameraGroup
+
+    camera = CameraGroup.load(path).cameras[0]
+    camera.set_rotation(np.zeros(3))
+    camera.set_translation(np.zeros(3))
+    return camera.project(points).reshape(-1, 2)
+
+
+def caliscope(path, points):
+    """caliscope loads its own file, which holds the tables one level deeper; OpenCV's functions are what it calls."""
+    from caliscope.cameras.camera_array import CameraArray
+
+    with tempfile.TemporaryDirectory() as folder:
+        deeper = os.path.join(folder, "camera_array.toml")
+        with open(path) as ours, open(deeper, "w") as text:
+            text.write(ours.read().split("[metadata]")[0].replace("[cam_", "[cameras."))
+        (camera,) = CameraArray.from_toml(deeper).cameras.values()
+    return projected(camera.matrix, camera.distortions, camera.fisheye, points)
+
+
+def lensfun(path, points):
+    """lensfun's own arithmetic of one point at a time, in single precision: rows of pixels it takes four at a time on some processors, with approximate reciprocals and
+    the factors of other pixels. The undistorted picture is rectilinear and has the focal length of the data base; the image is `SIZE`, of several lenses the `LENS`."""
+    import lensfunpy
+
+    with open(path) as text:
+        database = lensfunpy.Database(xml=text.read(), load_common=False, load_bundled=False)
+    name, focal = os.environ.get("LENS"), float(os.environ.get("FOCAL", "0"))
+    lens = next(lens for lens in database.lenses if name in (None, lens.model))
+    calibration = next(c for c in lens.calib_distortion if focal in (0, c.focal))
+    width, height = (int(side) for side in os.environ["SIZE"].split("x"))
+    modifier = lensfunpy.Modifier(lens, lens.crop_factor, width, height)
+    flags = lensfunpy.ModifyFlags.DISTORTION | lensfunpy.ModifyFlags.GEOMETRY
+    modifier.initialize(calibration.focal, 8.0, 1000.0, 1.0, lensfunpy.LensType.RECTILINEAR, np.uint8, flags)
+    # Its constructor: the diagonal between the outer pixels is that of 36 x 24 mm over the crop factor.
+    scale = calibration.focal * np.hypot(width - 1, height - 1) * lens.crop_factor / np.hypot(36, 24)
+    half = 0.5 * min(width - 1, height - 1)
+    centre = np.array([0.5 * (width - 1) + lens.center_x * half, 0.5 * (height - 1) + lens.center_y * half])
+    flat = points[:, :2] / points[:, 2:] * scale + centre
+    return np.array([modifier.apply_geometry_distortion(x, y, 1, 1)[0, 0] for x, y in flat])
+
+
+def usd(path, points):
+    """usd-core opens the stage; OpenCV's functions are those that the schemas name."""
+    from pxr import Usd
+
+    stage = Usd.Stage.Open(path)
+    prim = next(prim for prim in stage.Traverse() if prim.GetAttribute("omni:lensdistortion:model"))
+    model = prim.GetAttribute("omni:lensdistortion:model").Get()
+    values = {a.GetName().rsplit(":", 1)[1]: a.Get() for a in prim.GetAttributes() if a.GetName().startswith(f"omni:lensdistortion:{model}:")}
+    assert list(values["imageSize"]) == [int(side) for side in os.environ["SIZE"].split("x")]
+    names = {"opencvPinhole": "k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4", "opencvFisheye": "k1 k2 k3 k4"}[model].split()
+    matrix = [[values["fx"], 0, values["cx"]], [0, values["fy"], values["cy"]], [0, 0, 1]]
+    return projected(matrix, [values[name] for name in names], model == "opencvFisheye", points)
+
+
+def hugin(path, points):
+    """Hugin's pano_trafo, from an equirectangular panorama to the first image."""
+    import subprocess
+
+    with open(path) as ours:
+        panorama = next(line for line in ours if line.startswith("p "))
+    width, height = (int(word[1:]) for word in panorama.split()[2:4])
+    x, y, z = points.T
+    longitude, latitude = np.arctan2(x, z), np.arctan2(-y, np.hypot(x, z))
+    at = np.column_stack([(longitude / (2 * np.pi) + 0.5) * width - 0.5, (0.5 - latitude / np.pi) * height - 0.5])
+    asked = "".join(f"{float(x)!r} {float(y)!r}\n" for x, y in at)
+    answer = subprocess.run(["pano_trafo", "-r", path, "0"], input=asked, capture_output=True, text=True, check=True).stdout
+    return np.array([[float(word) for word in line.split()] for line in answer.splitlines()])
+
+
 def mrcal(path, points):
     import mrcal
 
@@ -157,7 +251,7 @@ def st_map(path, points):
     return places[rows, columns] - np.dstack([x, y])[rows, columns]
 
 
-TOOLS = {f.__name__: f for f in (colmap, kapture, opencv, mrcal, ros, theia, bundler, st_map)}
+TOOLS = {f.__name__: f for f in (colmap, kapture, opencv, numpy_archive, anipose, caliscope, lensfun, usd, hugin, mrcal, ros, theia, bundler, st_map)}
 
 
 def main():

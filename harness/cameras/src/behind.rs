@@ -16,7 +16,7 @@ pub(super) struct Behind {
 
 /// The share of a fisheye's frame that sees rays beyond 90 degrees; `None` where there is none, and of cameras that are no fisheyes.
 pub(super) fn behind(camera: &Camera) -> Option<Behind> {
-    if !matches!(camera, Camera::OpenCvFisheye(_) | Camera::PrismFisheye(_) | Camera::RadTanPrismFisheye(_)) {
+    if !matches!(camera, Camera::OpenCvFisheye(_) | Camera::PrismFisheye(_) | Camera::RadTanPrismFisheye(_) | Camera::SixPrismFisheye(_)) {
         return None;
     }
     let ((columns, rows), size) = (GRID, camera.size());

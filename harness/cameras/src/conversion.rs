@@ -4,7 +4,8 @@ use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, Target, convert};
 use thiserror::Error;
 
-use super::fit::{FitError, fit_to_format, fit_to_models};
+use super::fit::{FitError, calibrated_as, fit_to_format, fit_to_models};
+use super::format::Model;
 use super::recognised::are_within;
 use super::target::{Goal, Way};
 use super::{CameraFormat, NamedCamera, ParameterCovariance, ReadOptions, camera_bytes, parse_camera, splined};
@@ -21,6 +22,8 @@ pub struct Converted {
     pub conversion: Conversion,
     /// The name of the tool's model, if the tool has several.
     pub model: Option<&'static str>,
+    /// Of a fit the model, by its name in `calibrate --model`, of which every camera is held exactly, if there is one.
+    pub held_exactly: Option<&'static str>,
 }
 
 /// A camera that cannot be converted.
@@ -55,9 +58,13 @@ pub fn converted(
     let covariance = source.covariance.as_ref().map(|covariance| covariance.whole(&source.camera)).transpose();
     let options = ConvertOptions { covariance: covariance.map_err(ConversionError::Covariance)?, ..options.clone() };
     let pitch_um = pitch_um.or(source.pitch_um);
-    let (conversion, model) = match &goal.way {
+    let named = |(conversion, model): (Conversion, Model)| (conversion, Some(model.name), Some(model.target));
+    let (conversion, model, target) = match &goal.way {
         Way::One(_) | Way::AnyOf(_) if model.is_some() => return Err(ConversionError::ModelNamed),
-        _ if let Some(splines) = &source.splines => splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
+        _ if let Some(splines) = &source.splines => {
+            let (conversion, model) = splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?;
+            (conversion, model, None)
+        }
         // A fisheye was asked for: no other camera that the file holds too.
         Way::One(Target::OpenCvFisheye) | Way::Best
             if model.is_none()
@@ -65,19 +72,17 @@ pub fn converted(
                 && holds_only_as_it_is(source, goal, pitch_um) =>
         {
             let covariance = options.covariance.clone();
-            (Conversion { covariance, ..splined::as_they_are(source.camera) }, None)
+            (Conversion { covariance, ..splined::as_they_are(source.camera) }, None, None)
         }
-        Way::One(target) => (convert(&source.camera, *target, &options)?, None),
+        Way::One(target) => (convert(&source.camera, *target, &options)?, None, Some(*target)),
         Way::AnyOf(models) => {
-            let (conversion, model) = fit_to_models(goal.format, models, &source.camera, &options)?;
+            let (conversion, name, target) = named(fit_to_models(goal.format, models, &source.camera, &options)?);
             let fitted = conversion.method == Method::Fitted;
-            (conversion, fitted.then_some(model.name))
+            (conversion, name.filter(|_| fitted), target)
         }
-        Way::Best => {
-            let (conversion, model) = fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?;
-            (conversion, Some(model.name))
-        }
+        Way::Best => named(fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?),
     };
+    let held_exactly = target.filter(|_| conversion.method == Method::Fitted).and_then(|target| calibrated_as(&target));
     let splines = source.splines.clone().filter(|_| conversion.method == Method::Exact);
     let covariance = conversion.covariance.as_ref().map(|q| ParameterCovariance::of(&conversion.camera, q)).transpose();
     let camera = NamedCamera {
@@ -88,7 +93,7 @@ pub fn converted(
         pose_frame: source.pose_frame,
         ..NamedCamera::new(source.name.clone(), conversion.camera)
     };
-    Ok(Converted { camera, conversion, model })
+    Ok(Converted { camera, conversion, model, held_exactly })
 }
 
 /// `source` as it is, in its own convention.

@@ -1,6 +1,6 @@
 //! A camera for a format: which of its models holds it, and what else is lost.
 
-use calibench_model::camera::Camera;
+use calibench_model::camera::{AgisoftVersion, Camera};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Target, Verdict, convert};
 use thiserror::Error;
 
@@ -35,6 +35,34 @@ pub enum FitError {
         /// The reason of the best model.
         why: ConvertError,
     },
+}
+
+/// The models, by their names in `calibrate --model`, whose cameras `format` holds exactly.
+pub fn calibrated_models(format: &CameraFormat) -> Vec<&'static str> {
+    let mut names: Vec<&str> = format.models(None).iter().filter_map(|model| calibrated_as(&model.target)).collect();
+    names.dedup();
+    names
+}
+
+/// The model, by its name in `calibrate --model`, of which every camera is one of `target`.
+pub(super) fn calibrated_as(target: &Target) -> Option<&'static str> {
+    Some(match target {
+        Target::Photogrammetric { radial: 3, tangential: true, affinity: true, .. } => "photogrammetric",
+        Target::OpenCv { coefficients: 4 } => "opencv4",
+        Target::OpenCv { coefficients: 5 } => "opencv5",
+        Target::OpenCv { coefficients: 8 } => "opencv8",
+        Target::OpenCv { coefficients: 12 } => "opencv12",
+        Target::OpenCv { coefficients: 14 } => "opencv14",
+        Target::OpenCvFisheye => "opencv-fisheye",
+        Target::Agisoft { version: AgisoftVersion::Metashape, radial: 3.., tangential: 2.., affinity: true } => "metashape",
+        Target::Pix4d { .. } => "pix4d",
+        Target::DoubleSphere => "double-sphere",
+        Target::Eucm => "eucm",
+        Target::Omni { distortion: true } => "omni",
+        Target::Fov => "fov",
+        Target::PrismFisheye => "prism-fisheye",
+        _ => return None,
+    })
 }
 
 /// `camera` in one of the models of `format`, and which: exact in the first that holds it, or fitted in the one whose residuals are smallest. With `model`

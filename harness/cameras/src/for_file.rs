@@ -20,6 +20,8 @@ pub struct FileCamera {
     pub camera: NamedCamera,
     /// The convention and what the conversion cost, where it is a fit.
     pub fitted: Option<(String, Conversion)>,
+    /// Of a fit the model, by its name in `calibrate --model`, of which every camera is held exactly, if there is one.
+    pub held_exactly: Option<&'static str>,
     /// Why it is not in the convention that the file's ending asks for, but as it is, in the words of what refused it.
     pub instead: Option<String>,
 }
@@ -27,7 +29,7 @@ pub struct FileCamera {
 impl FileCamera {
     /// `source` in the first format that holds it exactly: with the ending of `path`, or with any.
     fn as_it_is(path: &Path, source: &NamedCamera, instead: Option<String>) -> Option<Self> {
-        Some(Self { format: holds_as_it_is(path, source)?, camera: source.clone(), fitted: None, instead })
+        Some(Self { format: holds_as_it_is(path, source)?, camera: source.clone(), fitted: None, held_exactly: None, instead })
     }
 }
 
@@ -90,10 +92,10 @@ pub fn kept_format(path: Option<&Path>, read: &'static CameraFormat, source: &Na
 fn in_convention(path: &Path, source: &NamedCamera, to: &str) -> Result<FileCamera, FileCameraError> {
     let given = Given { source, pitch_um: source.pitch_um, base_mm: None, order: TangentialOrder::OpenCv, output: Some(path) };
     let goal = goal(to, &given)?;
-    let Converted { camera, conversion, .. } = converted(source, &goal, None, None, &ConvertOptions::default())
+    let Converted { camera, conversion, held_exactly, .. } = converted(source, &goal, None, None, &ConvertOptions::default())
         .map_err(|error| FileCameraError::Conversion { to: to.to_owned(), error: Box::new(error) })?;
     let fitted = (conversion.method != Method::Exact).then(|| (to.to_owned(), conversion));
-    Ok(FileCamera { format: goal.format, camera, fitted, instead: None })
+    Ok(FileCamera { format: goal.format, camera, fitted, held_exactly, instead: None })
 }
 
 /// The format that holds all cameras in one file, if there is one.
@@ -119,7 +121,7 @@ fn ending(path: &Path) -> Option<String> {
 /// The convention that an ending asks for, where no format of that ending holds the camera as it is.
 fn by_ending(path: &Path, source: &NamedCamera) -> Option<&'static str> {
     let ending = ending(path)?;
-    let of_opencv = matches!(ending.as_str(), "yaml" | "yml" | "xml");
+    let of_opencv = matches!(ending.as_str(), "yaml" | "yml" | "xml" | "npz");
     match source.camera {
         Camera::OpenCv(_) => (ending == "toml" && source.pitch_um.is_some()).then_some("photogrammetric"),
         Camera::Agisoft(_) if ending == "xml" => None,

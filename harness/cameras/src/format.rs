@@ -83,6 +83,8 @@ pub struct CameraFormat {
     pub versions: &'static str,
     /// The usual ending of its file names, without a dot.
     pub extension: &'static str,
+    /// Names that stand in its files, by which a file that no format recognises is said to be near it.
+    pub(super) words: &'static str,
     /// Which of the tool's own numbers were reproduced; `None`: unverified.
     pub verified: Option<&'static str>,
     /// It may hold more than one camera.
@@ -109,6 +111,8 @@ pub struct CameraFormat {
     pub(super) half_space: bool,
     /// It does not say whether its coefficients are Brown's or those of the division model: [`ReadOptions::lens`].
     pub lens_is_open: bool,
+    /// Its matrices may have names of one's own: [`ReadOptions::matrix`], [`ReadOptions::distortion`].
+    pub(super) named_matrices: bool,
 }
 
 /// What most formats have in common, for struct updates.
@@ -117,6 +121,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     tool: "",
     versions: "",
     extension: "",
+    words: "",
     verified: None,
     many: false,
     states_size: true,
@@ -131,6 +136,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     origin_is_open: false,
     half_space: false,
     lens_is_open: false,
+    named_matrices: false,
 };
 
 impl CameraFormat {

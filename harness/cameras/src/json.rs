@@ -11,12 +11,17 @@ const MOST_DEPTH: usize = 32;
 
 /// The tree of a JSON text.
 pub(super) fn json(text: &str) -> Result<Entry, CameraFileError> {
-    Reader { text, at: 0, line: 1, values: 0, python: false }.whole()
+    json_without(text, "")
+}
+
+/// The tree of a JSON text without what is called `passed_over`, of which nothing is kept.
+pub(super) fn json_without(text: &str, passed_over: &str) -> Result<Entry, CameraFileError> {
+    Reader { text, at: 0, line: 1, values: 0, python: false, passed_over }.whole()
 }
 
 /// The tree of a text in Python's literals: single quotes, comments, commas at the end and bytes too.
 pub(super) fn python(text: &str) -> Result<Entry, CameraFileError> {
-    Reader { text, at: 0, line: 1, values: 0, python: true }.whole()
+    Reader { text, at: 0, line: 1, values: 0, python: true, passed_over: "" }.whole()
 }
 
 /// Text as it stands in JSON.
@@ -39,6 +44,8 @@ struct Reader<'a> {
     line: usize,
     values: usize,
     python: bool,
+    /// The name of what is not kept.
+    passed_over: &'a str,
 }
 
 impl Reader<'_> {
@@ -125,9 +132,35 @@ impl Reader<'_> {
                 return Err(self.wrong("expected `:`"));
             }
             self.step();
-            entries.push((name, self.value(depth + 1)?));
+            if !self.passed_over.is_empty() && name == self.passed_over {
+                self.pass()?;
+            } else {
+                entries.push((name, self.value(depth + 1)?));
+            }
         }
         tree::map(entries)
+    }
+
+    /// Steps over a value, whose brackets alone are looked at.
+    fn pass(&mut self) -> Result<(), CameraFileError> {
+        self.space();
+        let mut depth = 0_usize;
+        loop {
+            match self.peek() {
+                None => return Err(self.wrong("expected the end of a value")),
+                Some(b'"') => drop(self.string()?),
+                Some(b'{' | b'[') => {
+                    depth += 1;
+                    self.step();
+                }
+                Some(b'}' | b']') if depth > 0 => {
+                    depth -= 1;
+                    self.step();
+                }
+                Some(b',' | b'}' | b']') if depth == 0 => return Ok(()),
+                Some(_) => self.step(),
+            }
+        }
     }
 
     /// Steps over a comma or the end of a list; true at the end.
@@ -241,6 +274,15 @@ mod tests {
             assert!(error.problem.contains(expected), "{text}: {error}");
         }
         assert_eq!(json("[1,\n\n]").unwrap_err().line, Some(3));
+    }
+
+    #[test]
+    fn what_is_passed_over_is_not_kept() {
+        let tree = json_without("{\"points\": {\"1\": [1, \"}\", {}]\n},\n\"a\": {\"points\": 7, \"b\": 1}}", "points").unwrap();
+        let a = tree.required("a").unwrap();
+        assert!(tree.key("points").unwrap().is_none() && a.key("points").unwrap().is_none());
+        assert_eq!((a.line, a.number_of("b")), (3, Ok(1.0)));
+        assert!(json_without("{\"points\": [1", "points").unwrap_err().problem.contains("expected the end of a value"));
     }
 
     #[test]

@@ -20,6 +20,8 @@ mod kalibr_target;
 mod keys;
 mod lists;
 mod little_endian;
+mod npy;
+mod npy_beside;
 mod number;
 mod numbering;
 pub mod open_points;
@@ -38,7 +40,9 @@ mod source;
 mod splined;
 mod splines;
 pub mod target;
+mod toml_tree;
 mod tree;
+mod unknown;
 mod xml;
 
 use std::path::Path;
@@ -95,6 +99,10 @@ pub struct ReadOptions {
     pub ignore: Vec<String>,
     /// A file may state another size than [`Self::size`]: its own holds.
     pub other_size: bool,
+    /// The name of the camera matrix, in files of matrices under names of one's own.
+    pub matrix: Option<String>,
+    /// The name of its coefficients of distortion, or `none` for a camera without; of a matrix in a .npy that file's beside it.
+    pub distortion: Option<String>,
 }
 
 impl ReadOptions {
@@ -120,13 +128,14 @@ impl ReadOptions {
 /// Reads a camera file; the format is found by content.
 ///
 /// # Errors
-/// The first mistake, with file, line and element; for an unknown format why each known one said no; several formats that read different cameras
+/// The first mistake, with file, line and element; for an unknown format what the file looks like, with the two nearest formats and why they said no; several formats that read different cameras
 /// (by more than 1e-6 px in the frame).
 pub fn read_camera(path: &Path) -> Result<CameraFile, CameraFileError> {
     read_camera_with(path, &ReadOptions::default())
 }
 
-/// As [`read_camera`], with what the file leaves open. COLMAP's list of images is read with its list of cameras beside it: a camera an image, with its pose.
+/// As [`read_camera`], with what the file leaves open. COLMAP's list of images is read with its list of cameras beside it: a camera an image, with its pose;
+/// a camera matrix in a .npy with its coefficients in the .npy beside it that `options` names.
 ///
 /// # Errors
 /// As [`read_camera`].
@@ -135,6 +144,9 @@ pub fn read_camera_with(path: &Path, options: &ReadOptions) -> Result<CameraFile
     let bytes = source::read(path).map_err(|error| error.in_file(&name))?;
     if colmap_images::are_images(&bytes) {
         return colmap_images::read(path, &bytes, options);
+    }
+    if npy::is_array(&bytes) {
+        return npy_beside::read(path, &bytes, options);
     }
     parse_camera(&name, &bytes, options)
 }
@@ -151,7 +163,7 @@ pub fn parse_camera(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<C
 }
 
 fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
-    let no_text = |why| recognised::binary(FORMATS, bytes, options).unwrap_or(Err(why));
+    let no_text = |why| recognised::binary(FORMATS, bytes, options).unwrap_or_else(|| Err(unknown::bytes(bytes).unwrap_or(why)));
     match encoding::in_utf8(bytes) {
         Ok(text) => match Source::new(&text) {
             Ok(source) => recognised::cameras(FORMATS, &source, options),

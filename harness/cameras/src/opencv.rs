@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::number::pixels;
 use super::opencv_model::{self, Kind, kind};
-use super::opencv_names::{Pair, pairs};
+use super::opencv_names::{Pair, chosen, pairs};
 use super::opencv_storage::Matrix;
 use super::pose::of_rt;
 use super::tree::{Entry, Value};
@@ -54,11 +54,14 @@ const OF_PAIR: [&str; 11] = ["R", "T", "E", "F", "R1", "R2", "P1", "P2", "Q", "v
 /// The cameras of a FileStorage: one under the usual names, or as many as [`pairs`] finds, each called as its matrix is.
 pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let usual = (root.get(&CAMERA_MATRIX)?, root.get(&DISTORTION)?);
-    let is_usual = usual.0.is_some();
-    let pairs = match usual {
-        (Some(matrix), Some(distortion)) => vec![[matrix, distortion]],
-        (Some(_), None) => pairs(root, DISTORTION[0])?,
-        (None, _) => pairs(root, CAMERA_MATRIX[0])?,
+    let none = without_distortion();
+    let chosen = chosen(root, options, [usual.0, usual.1], &none)?;
+    let is_usual = usual.0.is_some_and(|(name, _)| chosen.is_none_or(|[(matrix, _), _]| matrix == name));
+    let pairs = match (chosen, usual) {
+        (Some(pair), _) => vec![pair],
+        (None, (Some(matrix), Some(distortion))) => vec![[matrix, distortion]],
+        (None, (Some(_), None)) => pairs(root, DISTORTION[0])?,
+        (None, (None, _)) => pairs(root, CAMERA_MATRIX[0])?,
     };
     let size = options.size_or(stated_size(root)?)?;
     let kind = kind(root, options)?;
@@ -84,6 +87,13 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
         (first.pose_frame, second.pose_frame) = (PoseFrame::FirstCamera, PoseFrame::FirstCamera);
     }
     Ok(cameras)
+}
+
+/// Four coefficients of zero, which every model has.
+fn without_distortion() -> Entry {
+    let scalar = |text: &str| Entry { line: 0, value: Value::Scalar(text.to_owned()) };
+    let parts = [("rows", "1"), ("cols", "4"), ("dt", "d"), ("data", "0 0 0 0")];
+    Entry { line: 0, value: Value::Map(parts.iter().map(|(name, text)| ((*name).to_owned(), scalar(text))).collect()) }
 }
 
 /// The second of two cameras against the first, where the file says it as OpenCV's stereo sample does. Matrices of these names that are something else are
@@ -115,7 +125,8 @@ fn camera(root: &Entry, pair: &Pair<'_>, size: ImageSize, kind: Option<Kind>) ->
         (None, Some(Kind::Fisheye)) => fisheye_camera(size, &k, &distortion),
         (None, _) => pinhole(size, &k, &distortion),
     };
-    let is_open = kind.is_none() && distortion.len() == 4 && matches!(camera, Ok(Camera::OpenCv(_)));
+    let is_open =
+        kind.is_none() && distortion.len() == 4 && distortion.iter().any(|k| *k != 0.0) && matches!(camera, Ok(Camera::OpenCv(_)));
     let note = is_open.then(|| "four coefficients without `fisheye_model`: read as the pinhole camera's k1, k2, p1, p2".to_owned());
     Ok((camera.map_err(|error| placed(error, name, entry))?, note))
 }
@@ -133,7 +144,11 @@ fn spreads(root: &Entry, camera: &Camera, notes: &mut Vec<String>) -> Result<Opt
     for (key, parameters) in SPREADS.iter().zip(spread_names(camera)) {
         let Some((key, entry)) = root.get(&[key])? else { continue };
         let wrong = |problem: String| placed(CameraFileError::new(problem), key, entry);
-        let sigmas = entry.matrix(14).and_then(|matrix| vector(&matrix)).map_err(|error| placed(error, key, entry))?;
+        let sigmas = match entry.value {
+            Value::Scalar(_) => entry.number().map(|sigma| vec![sigma]),
+            _ => entry.matrix(14).and_then(|matrix| vector(&matrix)),
+        };
+        let sigmas = sigmas.map_err(|error| placed(error, key, entry))?;
         any = true;
         if let Some(least) = sigmas.iter().find(|sigma| **sigma < 0.0) {
             return Err(wrong(format!("expected standard deviations from 0, found {least}")));
@@ -174,7 +189,7 @@ fn placed(error: CameraFileError, name: &str, entry: &Entry) -> CameraFileError 
     error.on_line(line as usize).of(format!("{name}{inner}"))
 }
 
-fn camera_matrix(matrix: &Matrix) -> Result<[f64; 9], CameraFileError> {
+pub(super) fn camera_matrix(matrix: &Matrix) -> Result<[f64; 9], CameraFileError> {
     let k: [f64; 9] = match (matrix.rows, matrix.columns, <[f64; 9]>::try_from(matrix.data.as_slice())) {
         (3, 3, Ok(k)) => k,
         (rows, columns, _) => return Err(CameraFileError::new(format!("expected 3 x 3, found {rows} x {columns}"))),
@@ -215,9 +230,14 @@ fn stated_size(root: &Entry) -> Result<Option<ImageSize>, CameraFileError> {
     }
 }
 
-/// Columns and rows in a list, or in a text as XML has them.
+/// Columns and rows in a list, in a text as XML has them, or in a matrix.
 fn size_in_one(entry: &Entry) -> Result<ImageSize, CameraFileError> {
     let words: Vec<&str> = match &entry.value {
+        Value::Map(_) => {
+            let numbers = entry.matrix(2)?.data;
+            let side = |index: usize| pixels(&numbers.get(index).copied().unwrap_or(0.0).to_string());
+            return Ok(ImageSize { width: side(0)?, height: side(1)? });
+        }
         Value::List(items) => items.iter().map(Entry::text).collect::<Result<_, _>>()?,
         _ => entry.text()?.split_whitespace().collect(),
     };
@@ -241,7 +261,7 @@ fn mirror(root: &Entry) -> Result<Option<(f64, &Entry)>, CameraFileError> {
     Ok(Some((value, entry)))
 }
 
-fn pinhole(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {
+pub(super) fn pinhole(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {
     if k[1] != 0.0 {
         return Err(CameraFileError::new(format!("the camera matrix has a skew of {}; OpenCV's pinhole camera has none", k[1])));
     }
@@ -266,7 +286,7 @@ fn omnidirectional(size: ImageSize, k: &[f64; 9], xi: f64, found: &[f64]) -> Res
     Ok(Omni { size, fx: k[0], fy: k[4], cx: k[2], cy: k[5], xi, k: [k1, k2], p: [p1, p2] }.into())
 }
 
-fn fisheye_camera(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {
+pub(super) fn fisheye_camera(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {
     let Ok(coefficients) = <[f64; 4]>::try_from(found) else {
         return Err(CameraFileError::new(format!("expected 4 coefficients of the fisheye camera, found {}", found.len())));
     };

@@ -4,6 +4,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, implausible};
 
 use super::source::Source;
+use super::unknown;
 use super::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 
 /// Cameras that picture what one pixel sees no further apart than this, px, are one.
@@ -27,9 +28,12 @@ pub(super) fn cameras(formats: &[&'static CameraFormat], source: &Source<'_>, op
     let asked: Vec<_> = texts.map(|&format| (format, (format.recognise)(source))).collect();
     let mut claims: Vec<&'static CameraFormat> = asked.iter().filter(|(_, answer)| answer.is_ok()).map(|(format, _)| *format).collect();
     if claims.is_empty() {
-        let why: Vec<String> =
-            asked.iter().filter_map(|(format, answer)| Some(format!("{}: {}", format.name, answer.as_ref().err()?))).collect();
-        return Err(CameraFileError::new(format!("no camera file that is known; tried {}", why.join("; "))));
+        if let Some(Err(why)) = options.from.and_then(|from| asked.iter().find(|(format, _)| *format == from)).map(|(_, answer)| answer) {
+            let from = options.from.map_or("", |from| from.name);
+            return Err(CameraFileError::new(format!("is no file of {from}: {why}")));
+        }
+        let why: Vec<(&CameraFormat, String)> = asked.into_iter().filter_map(|(format, answer)| Some((format, answer.err()?))).collect();
+        return Err(unknown::text(source, &why));
     }
     if let Some(from) = options.from {
         if let Some((_, Err(why))) = asked.iter().find(|(format, _)| *format == from) {
@@ -56,7 +60,8 @@ pub(super) fn binary(formats: &[&'static CameraFormat], bytes: &[u8], options: &
     let asked = |format: &&&'static CameraFormat| options.from.is_none_or(|from| from == **format);
     let is_of = |format: &&&'static CameraFormat| format.binary.as_ref().is_some_and(|binary| (binary.recognise)(bytes).is_ok());
     if let Some(format) = formats.iter().filter(asked).find(is_of).copied() {
-        let cameras = format.binary.as_ref().map(|binary| (binary.read)(bytes, options))?;
+        let cameras =
+            format.binary.as_ref().map(|binary| has_named_matrices(format, options).and_then(|()| (binary.read)(bytes, options)))?;
         return Some(cameras.map(|mut cameras| {
             cameras.iter_mut().enumerate().for_each(|(place, named)| doubt(place, named));
             CameraFile { format, cameras }
@@ -80,7 +85,20 @@ pub(super) fn doubt(place: usize, named: &mut NamedCamera) {
     }
 }
 
+/// Refuses names of matrices for a format that has none of one's own.
+fn has_named_matrices(format: &CameraFormat, options: &ReadOptions) -> Result<(), CameraFileError> {
+    let asked = options.matrix.as_ref().or(options.distortion.as_ref()).filter(|_| !format.named_matrices);
+    asked.map_or(Ok(()), |name| {
+        let problem = format!(
+            "is a file of {}, whose numbers have names of its own; --matrix and --distortion are for OpenCV's and NumPy's",
+            format.name
+        );
+        Err(CameraFileError::new(problem).of(name.as_str()))
+    })
+}
+
 fn read(format: &'static CameraFormat, source: &Source<'_>, options: &ReadOptions) -> Read {
+    has_named_matrices(format, options)?;
     let mut cameras = (format.read)(source, options)?;
     cameras.iter_mut().enumerate().for_each(|(place, named)| doubt(place, named));
     if cameras.is_empty() {

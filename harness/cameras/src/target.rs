@@ -58,7 +58,7 @@ pub struct Given<'a> {
     pub base_mm: Option<f64>,
     /// Order of Pix4D's T1 and T2.
     pub order: TangentialOrder,
-    /// Where the file goes: its ending decides between YAML, XML and JSON.
+    /// Where the file goes: its ending decides between YAML, XML, JSON and NumPy's archive.
     pub output: Option<&'a Path>,
 }
 
@@ -132,12 +132,9 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
     if let Some(format) = FORMATS.iter().copied().find(|format| format.name == name && !format.models(None).is_empty()) {
         return Ok(Goal { way: Way::Best, format });
     }
-    let ends_in = |ending| given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)));
-    let opencv = match (ends_in("xml"), ends_in("json")) {
-        (true, _) => "opencv-xml",
-        (_, true) => "opencv-json",
-        _ => "opencv-yaml",
-    };
+    let ends_in = |ending: &str| given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)));
+    let endings = [("xml", "opencv-xml"), ("json", "opencv-json"), ("npz", "numpy")];
+    let opencv = endings.into_iter().find(|(ending, _)| ends_in(ending)).map_or("opencv-yaml", |(_, format)| format);
     let sensor_width = |pitch_um: f64| f64::from(given.source.camera.size().width) * pitch_um * 1e-3;
     let (target, format) = match name {
         "photogrammetric" => (Target::photogrammetric(given.pitch(name)?), "photogrammetric"),

@@ -30,7 +30,7 @@ pub struct Reading {
     /// Order of the decentring coefficients of Pix4D, PhotoScan before 1.2 and Lens, which public sources do not settle [default: opencv]
     #[arg(long, value_enum, value_name = "ORDER")]
     order: Option<Order>,
-    /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG and Theia [default: centre], which public sources do not settle
+    /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG, Theia, Gyroflow and USD [default: centre], which public sources do not settle
     #[arg(long, value_enum, value_name = "ORIGIN")]
     origin: Option<Origin>,
     /// Distortion model of RealityScan's CSV, which does not say it [default: brown, where the coefficients can be no other's]
@@ -45,6 +45,12 @@ pub struct Reading {
     /// A file may state another size than `--size`: that is of other images.
     #[arg(skip)]
     other_size: bool,
+    /// Name of the camera matrix, in OpenCV's and NumPy's files where it is one's own
+    #[arg(long, value_name = "NAME")]
+    matrix: Option<String>,
+    /// Name of its coefficients of distortion, or `none`; of a camera matrix in a .npy the .npy beside it
+    #[arg(long, value_name = "NAME")]
+    distortion: Option<String>,
 }
 
 /// Which of two decentring coefficients multiplies r^2 + 2 x^2.
@@ -122,6 +128,8 @@ impl Reading {
             lens,
             from: self.from,
             ignore: self.ignore.clone(),
+            matrix: self.matrix.clone(),
+            distortion: self.distortion.clone(),
             other_size: self.other_size,
         }
     }

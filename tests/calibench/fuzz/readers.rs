@@ -86,10 +86,7 @@ fn camera(bytes: &[u8], _: &Path) -> Result<(), String> {
 }
 
 fn camera_of_size(bytes: &[u8], _: &Path) -> Result<(), String> {
-    read_camera(
-        bytes,
-        &ReadOptions { size: Some(SIZE), fisheye: Some(true), lens: None, from: None, ignore: Vec::new(), other_size: false },
-    )
+    read_camera(bytes, &ReadOptions { size: Some(SIZE), fisheye: Some(true), ..ReadOptions::default() })
 }
 
 /// What a format reads it writes and reads again, or says why not.

@@ -19,6 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "basalt",
     versions: "calibration JSON",
     extension: "json",
+    words: "value0 T_imu_cam intrinsics camera_type fx fy cx cy xi alpha resolution px py pz qx qy qz qw",
     many: true,
     recognise: |source| {
         let found = source.text.trim_start().starts_with('{') && source.text.contains("\"camera_type\"");

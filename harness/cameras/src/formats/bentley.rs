@@ -17,6 +17,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Bentley ContextCapture, iTwin Capture",
     versions: "BlocksExchange XML 2.1 and later, perspective photogroups",
     extension: "xml",
+    words: "BlocksExchange Block Photogroups Photogroup ImageDimensions CameraModelType FocalLength FocalLengthPixels SensorSize PrincipalPoint Distortion K1 K2 K3 P1 P2",
     many: true,
     recognise: |source| xml::root_is(source.xml.as_ref(), "BlocksExchange"),
     read,

@@ -18,6 +18,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Bundler",
     versions: "bundle.out v0.3",
     extension: "out",
+    words: "Bundle file",
     many: true,
     states_size: false,
     recognise: |source| {

@@ -17,6 +17,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Camera Calibration Toolbox for Matlab",
     versions: "Calib_Results.m",
     extension: "m",
+    words: "fc cc kc alpha_c fc_error cc_error kc_error nx ny est_fc est_dist",
     recognise,
     read,
     write: Some(write),

@@ -18,6 +18,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "camodocal, VINS",
     versions: "camera YAML: MEI, KANNALA_BRANDT, PINHOLE",
     extension: "yaml",
+    words: "model_type camera_name image_width image_height mirror_parameters distortion_parameters projection_parameters gamma1 gamma2 u0 v0 mu mv k2 k3 k4 k5",
     recognise: |source| {
         let found = source.xml.is_none() && source.text.lines().any(|line| line.starts_with("model_type:"));
         if found { Ok(()) } else { Err("no `model_type:`".into()) }

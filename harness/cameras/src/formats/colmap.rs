@@ -16,6 +16,7 @@ pub(crate) static FORMAT: CameraFormat = CameraFormat {
     tool: "COLMAP",
     versions: "cameras.txt of 3.x and 4.x",
     extension: "txt",
+    words: "PINHOLE SIMPLE_PINHOLE SIMPLE_RADIAL RADIAL OPENCV OPENCV_FISHEYE FULL_OPENCV",
     verified: Some("pycolmap 4.2.1 reads what is written and projects alike in every model, to 1e-8 px"),
     many: true,
     recognise,

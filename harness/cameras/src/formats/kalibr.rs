@@ -21,6 +21,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Kalibr",
     versions: "camchain YAML",
     extension: "yaml",
+    words: "cam0 cam1 camera_model intrinsics distortion_model distortion_coeffs resolution T_cn_cnm1 T_cam_imu rostopic cam_overlaps timeshift_cam_imu",
     many: true,
     recognise,
     read,

@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "kapture",
     versions: "sensors.txt of 1.0 and 1.1",
     extension: "txt",
+    words: "kapture sensors camera SIMPLE_PINHOLE PINHOLE SIMPLE_RADIAL RADIAL OPENCV",
     verified: Some("kapture 1.1.12 reads what is written, and pycolmap projects alike, to 1e-8 px"),
     many: true,
     recognise,

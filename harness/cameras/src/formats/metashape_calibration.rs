@@ -12,6 +12,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Agisoft Metashape, PhotoScan, Lens",
     versions: "calibration XML: Metashape and PhotoScan from 1.2 (f; frame cameras and fisheyes), older PhotoScan and Lens (fx, fy)",
     extension: "xml",
+    words: "calibration projection width height f cx cy b1 b2 k1 k2 k3 k4 p1 p2 date",
     verified: Some(
         "Metashape's own OpenCV export of the same adjustment pictures every ray alike, to 1e-10 of the frame (frame cameras with f; not fx, fy, not fisheyes)",
     ),

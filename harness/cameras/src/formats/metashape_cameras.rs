@@ -19,6 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Agisoft Metashape, PhotoScan",
     versions: "camera XML with sensors: document versions 1 and 2",
     extension: "xml",
+    words: "document chunk sensors sensor calibration resolution camera cameras transform label f cx cy k1 covariance",
     verified: None,
     many: true,
     states_size: true,

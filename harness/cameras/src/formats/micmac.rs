@@ -17,6 +17,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "MicMac",
     versions: "AutoCal XML of Apero (not MMVII)",
     extension: "xml",
+    words: "ExportAPERO CalibrationInternConique KnownConv PP F SzIm CalibDistortion ModRad ModPhgrStd ModUnif RadialePart CDist CoeffDist",
     recognise: |source| {
         let found = source.xml.as_ref().is_some_and(|document| calibration(document.root()).is_some());
         if found { Ok(()) } else { Err("no CalibrationInternConique".into()) }

@@ -1,5 +1,6 @@
 //! The camera files that are known: one file a format. A new one is its file and its two lines here.
 
+mod anipose;
 mod bal;
 mod basalt;
 mod bentley;
@@ -8,18 +9,23 @@ mod caltech;
 mod camodocal;
 pub(super) mod colmap;
 pub(super) mod colmap_bin;
+mod gyroflow;
 mod kalibr;
 mod kapture;
+mod lensfun;
+mod matlab;
 mod metashape_calibration;
 mod metashape_cameras;
 mod micmac;
 pub(super) mod mrcal;
 mod nerfstudio;
+mod numpy;
 mod opencv_json;
 mod opencv_xml;
 mod opencv_yaml;
 pub(super) mod openmvg;
 mod opensfm;
+mod panotools;
 mod photogrammetric;
 mod photoscan_cameras;
 mod pix4d_cam;
@@ -31,6 +37,7 @@ mod reality_scan_csv;
 mod ros;
 mod ros_message;
 mod theia;
+mod usd;
 
 /// The worked example of CONTRIBUTING, linked from `examples/`.
 #[cfg(test)]
@@ -50,6 +57,8 @@ pub static FORMATS: &[&CameraFormat] = &[
     &opencv_yaml::FORMAT,
     &opencv_xml::FORMAT,
     &opencv_json::FORMAT,
+    &numpy::FORMAT,
+    &anipose::FORMAT,
     &metashape_calibration::FORMAT,
     &metashape_cameras::FORMAT,
     &photoscan_cameras::FORMAT,
@@ -73,6 +82,11 @@ pub static FORMATS: &[&CameraFormat] = &[
     &bundler::FORMAT,
     &bal::FORMAT,
     &caltech::FORMAT,
+    &lensfun::FORMAT,
+    &panotools::FORMAT,
+    &gyroflow::FORMAT,
+    &matlab::FORMAT,
+    &usd::FORMAT,
 ];
 
 /// The format called `name`.

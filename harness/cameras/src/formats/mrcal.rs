@@ -20,6 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "mrcal",
     versions: ".cameramodel of 1 and 2, to 2.5",
     extension: "cameramodel",
+    words: "lensmodel intrinsics extrinsics rt_cam_ref imagersize valid_intrinsics_region optimization_inputs",
     verified: Some("mrcal 2.2 reads what is written and projects alike, models to 1e-8 px and splines to 1e-6 px"),
     recognise: |source| {
         let first = source.lines().find(|(_, line)| !line.starts_with('#')).map_or("", |(_, line)| line);

@@ -20,6 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "nerfstudio, instant-ngp",
     versions: "transforms.json",
     extension: "json",
+    words: "camera_model fl_x fl_y cx cy w h k1 k2 p1 p2 camera_angle_x aabb_scale frames file_path transform_matrix",
     many: true,
     recognise: |source| {
         let text = source.text;

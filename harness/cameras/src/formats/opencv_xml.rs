@@ -15,6 +15,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "OpenCV, Metashape's export for OpenCV",
     versions: "FileStorage XML of 2.4 to 5",
     extension: "xml",
+    words: "opencv_storage type_id rows cols dt data camera_matrix distortion_coefficients image_width image_height",
     verified: Some(
         "OpenCV's FileStorage reads what is written, number for number; Metashape's two exports of one adjustment agree to 1e-10",
     ),
@@ -25,6 +26,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     write: Some(write),
     keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::Variances },
     half_space: true,
+    named_matrices: true,
     ..PLAIN
 };
 

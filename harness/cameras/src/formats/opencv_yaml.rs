@@ -13,8 +13,9 @@ use crate::{CameraFileError, CameraFormat, ReadOptions, opencv};
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "opencv-yaml",
     tool: "OpenCV",
-    versions: "FileStorage YAML:1.0 of 2.4 to 5",
+    versions: "FileStorage YAML:1.0 of 2.4 to 5; lists of lists, as Python's yaml writes them",
     extension: "yml",
+    words: "rows cols dt data camera_matrix distortion_coefficients image_width image_height opencv",
     verified: Some("OpenCV's FileStorage reads what is written, number for number"),
     many: false,
     states_size: true,
@@ -23,6 +24,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     write: Some(write),
     keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::Variances },
     half_space: true,
+    named_matrices: true,
     ..PLAIN
 };
 
@@ -34,12 +36,21 @@ const MOST_DEPTH: usize = 32;
 fn recognise(source: &Source<'_>) -> Result<(), String> {
     let has = |key: &str| source.text.lines().any(|line| line.starts_with(key));
     let tagged = source.text.contains("!!opencv-matrix") || source.text.contains("!!opencv-nd-matrix");
-    if source.xml.is_some() || !(tagged || source.text.starts_with("%YAML")) {
-        return Err("neither a `%YAML` line at the top nor a `!!opencv-matrix`".into());
+    // As Python's yaml writes NumPy's lists.
+    let listed = || source.xml.is_none() && has("camera_matrix:") && !has("distortion_model:") && opencv_lists(source.text);
+    if source.xml.is_some() || !(tagged || source.text.starts_with("%YAML") || listed()) {
+        return Err("neither a `%YAML` line at the top nor a `!!opencv-matrix`, nor `camera_matrix:` in lists".into());
     }
     // The first line alone is that of other tools' YAML, too; camodocal's may hold OpenCV's matrices.
     let others = has("model_type:") || (!tagged && (has("distortion_model:") || has("cam0:")));
     if others { Err("has the keys of another tool".into()) } else { Ok(()) }
+}
+
+/// Whether `camera_matrix` is rows of numbers.
+fn opencv_lists(text: &str) -> bool {
+    let matrix =
+        |root: Entry| root.key("camera_matrix").is_ok_and(|matrix| matrix.is_some_and(|matrix| matches!(matrix.value, Value::List(_))));
+    tree(text).is_ok_and(matrix)
 }
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {

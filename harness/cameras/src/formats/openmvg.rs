@@ -21,6 +21,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "OpenMVG",
     versions: "sfm_data.json 0.3 and later",
     extension: "json",
+    words: "sfm_data_version root_path views intrinsics extrinsics polymorphic_id polymorphic_name ptr_wrapper focal_length principal_point disto_k3 disto_k1 disto_t2",
     many: true,
     recognise: |source| {
         let found = source.text.trim_start().starts_with('{') && source.text.contains("\"sfm_data_version\"");

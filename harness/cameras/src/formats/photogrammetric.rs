@@ -8,6 +8,7 @@ use super::PLAIN;
 use crate::format::{Keeps, KeptCovariance, KeptPose};
 use crate::photogrammetric_toml::{CovarianceRows, Head, Wire};
 use crate::source::Source;
+use crate::toml_tree::{LARGEST, located};
 use crate::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -15,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "calibench",
     versions: "1",
     extension: "toml",
+    words: "format version model image width_px height_px pitch_um interior_orientation c_mm x0_mm y0_mm",
     verified: Some("our own: every number is read back exactly"),
     many: false,
     states_size: true,
@@ -27,9 +29,6 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
 
 const NAME: &str = "calibench-camera";
 const VERSION: u32 = 1;
-/// Bytes at most: a TOML tree takes a multiple of its text.
-const LARGEST: usize = 1 << 20;
-
 fn recognise(source: &Source<'_>) -> Result<(), String> {
     let says_so = |line: &str| line.split_once('=').is_some_and(|(key, value)| key.trim() == "format" && value.contains(NAME));
     if source.xml.is_none() && source.lines().any(|(_, line)| says_so(line)) {
@@ -59,14 +58,6 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let covariance = wire.covariance.map(|rows| covariance(rows, &camera)).transpose()?;
     let pitch_um = Some(wire.image.pitch_um);
     Ok(vec![NamedCamera { pitch_um, covariance, ..NamedCamera::new(wire.name.unwrap_or_default(), camera) }])
-}
-
-fn located(text: &str, error: &toml::de::Error) -> CameraFileError {
-    let problem = CameraFileError::new(error.message());
-    let Some(span) = error.span() else { return problem };
-    let before = &text[..text.floor_char_boundary(span.start)];
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    problem.on_line(before.matches('\n').count() + 1).in_column(before[line_start..].chars().count() + 1)
 }
 
 /// Values that no camera has.

@@ -17,6 +17,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Agisoft PhotoScan",
     versions: "camera XML of the oldest versions, with fx, fy, skew",
     extension: "xml",
+    words: "collection cameras camera transform calibration projection width height fx fy cx cy skew",
     verified: None,
     many: true,
     states_size: true,

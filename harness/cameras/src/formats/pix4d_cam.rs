@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Pix4D",
     versions: "pix4d_calibrated_internal_camera_parameters.cam, perspective lens",
     extension: "cam",
+    words: "Pix4D camera calibration file Focal Px Py F K1 K2 K3 T1 T2",
     verified: None,
     many: true,
     states_size: false,

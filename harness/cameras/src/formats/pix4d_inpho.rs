@@ -19,6 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Pix4D, for INPHO",
     versions: "calibrated_internal_camera_parameters.cam",
     extension: "cam",
+    words: "camera_calibration_file FOCAL XPOFF YPOFF SYM_DIST DEC_DIST",
     verified: Some(
         "Pix4D's camera matrix and coefficients of the same project, to their printed digits (order and signs of T1, T2 in use: unverified)",
     ),

@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Pix4D",
     versions: "calibrated_camera_parameters.txt, perspective lens",
     extension: "txt",
+    words: "fileName imageWidth imageHeight matrix radial tangential position rotation",
     verified: Some(
         "K [R, -R t] gives Pix4D's P-matrices of all 168 images, to their printed digits (order and signs of T1, T2: unverified)",
     ),

@@ -17,6 +17,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "RealityCapture, RealityScan",
     versions: "XMP version 2 to 4",
     extension: "xmp",
+    words: "xmpmeta RDF Description xcr DistortionModel FocalLength35mm PrincipalPointU PrincipalPointV DistortionCoeficients Rotation Position Skew AspectRatio",
     states_size: false,
     recognise: |source| {
         let found = source.xml.as_ref().is_some_and(|document| description(document.root()).is_some());

@@ -20,6 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "RealityCapture, RealityScan",
     versions: "Internal/External camera parameters",
     extension: "csv",
+    words: "cameras name alt yaw pitch roll f_35mm px_norm py_norm",
     many: true,
     states_size: false,
     recognise: |source| match header(source.text) {

@@ -19,6 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "ROS",
     versions: "camera_info YAML of ROS 1 and 2",
     extension: "yaml",
+    words: "image_width image_height camera_name camera_matrix distortion_model distortion_coefficients rectification_matrix projection_matrix rows cols data",
     verified: Some("camera_calibration_parsers 1.12 of ROS reads what is written, and OpenCV projects alike, to 1e-8 px"),
     recognise,
     read,

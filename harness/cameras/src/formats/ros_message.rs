@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "ROS",
     versions: "sensor_msgs/CameraInfo of ROS 1 and 2, as it is printed",
     extension: "yaml",
+    words: "header frame_id seq stamp distortion_model D K R P binning_x binning_y roi x_offset y_offset do_rectify",
     recognise,
     read,
     convention: Some(&tool_conventions::ROS),

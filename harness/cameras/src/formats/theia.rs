@@ -18,6 +18,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "Theia",
     versions: "calibration JSON of 0.8 and later",
     extension: "json",
+    words: "priors CameraIntrinsicsPrior image_name focal_length principal_point radial_distortion_coeffs camera_intrinsics_type tangential_distortion_coeffs",
     many: true,
     recognise: |source| {
         let found = source.text.trim_start().starts_with('{') && source.text.contains("\"CameraIntrinsicsPrior\"");

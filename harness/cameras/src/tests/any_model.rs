@@ -2,8 +2,9 @@
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::{
-    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize, MicMac,
-    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize,
+    LensProjection, MicMac, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
+    TangentialOrder,
 };
 use calibench_model::convert::{ConvertOptions, Method, WARNING_PX};
 
@@ -72,6 +73,18 @@ pub(super) fn all_models() -> Vec<Camera> {
         PrismFisheye { size: SIZE, fx, fy, cx, cy, k: [-0.01, 0.002, 0.0, 0.0], p: [2e-4, 1e-4], s: [1e-4, -2e-4] }.into(),
         Eucm { size: SIZE, fx, fy, cx, cy, alpha: 0.5, beta: -0.1 }.into(),
         RadTanPrismFisheye {
+            size: SIZE,
+            fx,
+            fy,
+            cx,
+            cy,
+            k: [-0.01, 0.002, 0.0, 0.0, 1e-4, 0.0],
+            p: [2e-4, 1e-4],
+            s: [1e-4, -2e-4, 2e-4, 1e-4],
+        }
+        .into(),
+        PtLens { size: SIZE, projection: LensProjection::Stereographic, f: 700.0, cx, cy, a: 0.01, b: -0.03, c: 0.005 }.into(),
+        SixPrismFisheye {
             size: SIZE,
             fx,
             fy,

@@ -38,6 +38,8 @@ const SIZE: ReadOptions = ReadOptions {
     from: None,
     ignore: Vec::new(),
     other_size: false,
+    matrix: None,
+    distortion: None,
 };
 
 #[test]

@@ -1,24 +1,29 @@
 //! Camera files, read and written.
 
+mod anipose;
 mod any_model;
 mod colmap_files;
 mod encodings;
 mod files;
 mod malformed;
+mod numpy;
 mod other_names;
 mod own_format;
+mod panorama;
 mod reality_scan;
 mod recognised;
 mod reconstructions;
+mod renderers;
 mod round_trip;
 mod same_camera;
 mod splines;
 mod spreads;
 mod tool_formats;
 mod tool_formats_malformed;
+mod unknown;
 mod unknown_keys;
 
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::camera::{Camera, CameraModel, ImageSize};
 
 use super::{CameraFile, NamedCamera, ReadOptions, parse_camera};
 
@@ -30,6 +35,17 @@ fn read(text: &str) -> Result<CameraFile, String> {
 #[expect(clippy::needless_pass_by_value, reason = "options are made where they are given")]
 fn read_with(text: &str, options: ReadOptions) -> Result<CameraFile, String> {
     parse_camera("f", text.as_bytes(), &options).map_err(|error| error.to_string())
+}
+
+/// A file from which the readers' mistakes are tried.
+fn seed(name: &str) -> String {
+    let path = format!("{}/../../tests/calibench/fuzz/seeds/cameras/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// Options of a size alone.
+fn sized_options(size: ImageSize) -> ReadOptions {
+    ReadOptions { size: Some(size), ..ReadOptions::default() }
 }
 
 /// The largest difference of two cameras' parameters, relative to the parameter, or to the focal length for lengths of the same unit.

@@ -203,9 +203,7 @@ fn bundler_s_formula_is_what_is_read() {
     // P = R X + t, p = -P / P_z, p' = f (1 + k1 |p|^2 + k2 |p|^4) p from the middle, y up.
     let text = "# Bundle file v0.3\n2 0\n500 -0.1 0.02\n1 0 0\n0 1 0\n0 0 1\n1 2 -3\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n";
     let size = ImageSize { width: 640, height: 480 };
-    let file =
-        read_with(text, ReadOptions { size: Some(size), fisheye: None, lens: None, from: None, ignore: Vec::new(), other_size: false })
-            .unwrap();
+    let file = read_with(text, ReadOptions { size: Some(size), ..ReadOptions::default() }).unwrap();
     assert_eq!((file.cameras.len(), file.cameras[0].notes.len()), (1, 1));
     let (camera, pose) = (file.cameras[0].camera, file.cameras[0].pose.unwrap());
     let (world, t) = ([0.3, -0.2, -1.0], [1.0, 2.0, -3.0]);

@@ -2,7 +2,7 @@
 
 use calibench_model::camera::{
     Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye, PrismFisheye,
-    RadTanPrismFisheye,
+    RadTanPrismFisheye, SixPrismFisheye,
 };
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ use super::read_with;
 use super::round_trip::{coefficients, focal, name, offset, size};
 
 /// The formats of this file, in the order of the registry.
-pub const ROUND_TRIPPED: [&str; 18] = [
+pub const ROUND_TRIPPED: [&str; 19] = [
     "camodocal",
     "ros",
     "kalibr",
@@ -32,6 +32,7 @@ pub const ROUND_TRIPPED: [&str; 18] = [
     "bundler",
     "bal",
     "caltech",
+    "anipose",
 ];
 
 /// The values that decide what a camera pictures, whatever the number of its coefficients is called.
@@ -120,6 +121,11 @@ fn prism() -> impl Strategy<Value = Camera> {
 fn then_prism() -> impl Strategy<Value = Camera> {
     let camera = (plain(), coefficients(), coefficients(), coefficients());
     camera.prop_map(|((size, [fx, fy, cx, cy]), k, p, s)| RadTanPrismFisheye { size, fx, fy, cx, cy, k, p, s }.into())
+}
+
+fn six_prism() -> impl Strategy<Value = Camera> {
+    let camera = (plain(), coefficients(), coefficients(), coefficients());
+    camera.prop_map(|((size, [fx, fy, cx, cy]), k, p, s)| SixPrismFisheye { size, fx, fy, cx, cy, k, p, s }.into())
 }
 
 fn division() -> impl Strategy<Value = Camera> {
@@ -229,7 +235,7 @@ proptest! {
     }
 
     #[test]
-    fn opensfm(cameras in prop::collection::vec(prop_oneof![centred(), opencv(5), fisheye()], 1..4)) {
+    fn opensfm(cameras in prop::collection::vec(prop_oneof![centred(), opencv(5), fisheye(), six_prism()], 1..4)) {
         let cameras: Vec<_> = cameras.into_iter().enumerate().map(|(i, c)| NamedCamera::new(format!("v2 \"maker\" {i}"), c)).collect();
         comes_back("opensfm", &cameras);
     }
@@ -250,6 +256,11 @@ proptest! {
     fn theia(cameras in prop::collection::vec(prop_oneof![opencv(5), metashape(true), fisheye(), fov(), opencv(2)], 1..3)) {
         let cameras: Vec<_> = cameras.into_iter().enumerate().map(|(i, c)| NamedCamera::new(format!("view_{i}.jpg"), c)).collect();
         comes_back("theia", &cameras);
+    }
+
+    #[test]
+    fn anipose(cameras in prop::collection::vec(posed(prop_oneof![opencv(4), opencv(8), fisheye()]), 1..13)) {
+        comes_back("anipose", &cameras);
     }
 
     #[test]

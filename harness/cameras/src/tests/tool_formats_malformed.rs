@@ -12,6 +12,8 @@ const SIZE: ReadOptions = ReadOptions {
     from: None,
     ignore: Vec::new(),
     other_size: false,
+    matrix: None,
+    distortion: None,
 };
 
 const COLMAP: &str = "# Camera list\n1 OPENCV 640 480 500 501 320 240 -0.1 0.02 1e-3 2e-3\n2 PINHOLE 640 480 500 501 320 240\n";
@@ -90,6 +92,8 @@ fn the_samples_are_read_as_what_they_are() {
             from: None,
             ignore: Vec::new(),
             other_size: false,
+            matrix: None,
+            distortion: None,
         };
         let states_size = super::super::format_named(format).unwrap().states_size;
         assert_eq!(read_with(text, other).is_err(), states_size, "{format}");

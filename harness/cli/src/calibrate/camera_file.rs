@@ -11,7 +11,7 @@ use calibench_files::OutputFile;
 use calibench_model::NamedCamera;
 use calibench_model::convert::ConvertError;
 
-use super::super::convert::{advise, no_target, size_of};
+use super::super::convert::{advise, exact_for, no_target, size_of};
 use crate::failure::Failure;
 
 /// Writes the cameras with their covariances: in the convention asked for, or in the first format that holds them as they are and has the file's ending.
@@ -34,7 +34,8 @@ pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str
     }
     for file in &made {
         if let Some((to, conversion)) = &file.fitted {
-            say!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
+            let residuals = size_of(&conversion.residual);
+            say!("{}: converted to {to} by a fit: residuals {residuals}{}", path.display(), exact_for(file.held_exactly));
         }
     }
     for FileCamera { format, camera, .. } in &made {

@@ -8,7 +8,7 @@ mod said;
 use std::path::PathBuf;
 
 use calibench_cameras::conversion::{ConversionError, Converted, converted, unchanged};
-use calibench_cameras::fit::{FitError, losses};
+use calibench_cameras::fit::{FitError, calibrated_models, losses};
 use calibench_cameras::target::{Given, TargetError, goal};
 use calibench_cameras::{CameraFormat, inputs_of};
 use calibench_diagnostics::nearest;
@@ -219,10 +219,10 @@ impl Convert {
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
         let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
-        let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error, label))?;
+        let Converted { camera, conversion, model, held_exactly } = found.map_err(|error| self.refused(&error, label))?;
         if !quiet {
             let model = model.map_or(String::new(), |model| format!("{model}: "));
-            said.push((label.map(str::to_owned), format!("{model}{}", summary(&conversion))));
+            said.push((label.map(str::to_owned), format!("{model}{}{}", summary(&conversion), exact_for(held_exactly))));
         }
         if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
             // An exact conversion takes a fold along; it is no truth beyond it in any convention.
@@ -250,7 +250,11 @@ impl Convert {
             // Of the command, and not of a camera.
             ConversionError::Fit(FitError::NoModels { .. } | FitError::UnknownModel { .. }) => Failure::input(error.to_string()),
             ConversionError::Convert(error) => Failure::input(format!("{name}{error}{}", flag(error))),
-            ConversionError::Fit(FitError::Refused { why, .. }) => Failure::input(format!("{name}{error}{}", flag(why))),
+            ConversionError::Fit(FitError::Refused { why, format }) => {
+                let models = format_named(format).map_or(Vec::new(), calibrated_models);
+                let held = if models.is_empty() { String::new() } else { exact_for(Some(models.join(", ").as_str())) };
+                Failure::input(format!("{name}{error}{}{held}", flag(why)))
+            }
             _ => Failure::input(format!("{name}{error}")),
         }
     }
@@ -367,6 +371,11 @@ fn summary(conversion: &Conversion) -> String {
     let angle = conversion.rotation.angle().to_degrees();
     let rotation = if angle > 0.0 { format!(", rotated by {angle:.6}\u{b0}") } else { String::new() };
     format!("{word}: residuals {}, over {region}{rotation}", size_of(&conversion.residual))
+}
+
+/// With which model a calibration would be held exactly.
+pub fn exact_for(model: Option<&str>) -> String {
+    model.map_or(String::new(), |model| format!("; exact for a camera of `calibrate --model`: {model}"))
 }
 
 /// Vectors on a regular grid as a picture.

@@ -99,7 +99,8 @@ impl Axial for Normalised {
 
     fn plane(&self) -> Option<Plane> {
         let [p1, p2] = self.0.p;
-        Some(Plane { k: self.0.k, p: [p2, p1], s: [0.0; 2], s4: [0.0; 2] })
+        let [k1, k2, k3, k4] = self.0.k;
+        Some(Plane { k: [k1, k2, k3, k4, 0.0, 0.0], p: [p2, p1], s: [0.0; 2], s4: [0.0; 2] })
     }
 
     fn plane_parameters(&self) -> &'static [usize] {

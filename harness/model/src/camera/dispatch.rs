@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
-    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, Reframe, Resampling, Slopes,
-    Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d,
-    prism_fisheye, rad_tan_prism_fisheye, tool_conventions,
+    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, Ray, Reframe, Resampling,
+    SixPrismFisheye, Slopes, Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye,
+    photogrammetric, pix4d, prism_fisheye, pt_lens, rad_tan_prism_fisheye, six_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;
 
@@ -41,6 +41,10 @@ pub enum Camera {
     RadTanPrismFisheye(RadTanPrismFisheye),
     /// MicMac's.
     MicMac(MicMac),
+    /// PanoTools'.
+    PtLens(PtLens),
+    /// Fisheye with six radial coefficients, decentring and thin prism.
+    SixPrismFisheye(SixPrismFisheye),
 }
 
 macro_rules! each {
@@ -60,6 +64,8 @@ macro_rules! each {
             Camera::PrismFisheye($model) => $work,
             Camera::RadTanPrismFisheye($model) => $work,
             Camera::MicMac($model) => $work,
+            Camera::PtLens($model) => $work,
+            Camera::SixPrismFisheye($model) => $work,
         }
     };
 }
@@ -84,6 +90,8 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &omni::CONVENTION,
         &fov::CONVENTION,
         &micmac::CONVENTION,
+        &pt_lens::CONVENTION,
+        &six_prism_fisheye::CONVENTION,
         &tool_conventions::COLMAP,
         &tool_conventions::KAPTURE,
         &tool_conventions::ROS,
@@ -100,6 +108,9 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &tool_conventions::BENTLEY,
         &tool_conventions::PHOTOMODELER,
         &tool_conventions::CALTECH,
+        &tool_conventions::GYROFLOW,
+        &tool_conventions::MATLAB,
+        &tool_conventions::USD,
     ]
 }
 
@@ -121,6 +132,8 @@ impl Camera {
             Self::PrismFisheye(_) => &prism_fisheye::CONVENTION,
             Self::RadTanPrismFisheye(_) => &rad_tan_prism_fisheye::CONVENTION,
             Self::MicMac(_) => &micmac::CONVENTION,
+            Self::PtLens(_) => &pt_lens::CONVENTION,
+            Self::SixPrismFisheye(_) => &six_prism_fisheye::CONVENTION,
         }
     }
 }
@@ -209,7 +222,9 @@ from!(
     Fov,
     PrismFisheye,
     RadTanPrismFisheye,
-    MicMac
+    MicMac,
+    PtLens,
+    SixPrismFisheye
 );
 
 #[cfg(test)]

@@ -76,7 +76,7 @@ impl Axial for Omni {
     }
 
     fn plane(&self) -> Option<Plane> {
-        let plane = Plane { k: [self.k[0], self.k[1], 0.0, 0.0], p: self.p, s: [0.0; 2], s4: [0.0; 2] };
+        let plane = Plane { k: [self.k[0], self.k[1], 0.0, 0.0, 0.0, 0.0], p: self.p, s: [0.0; 2], s4: [0.0; 2] };
         (self.k != [0.0; 2] || self.p != [0.0; 2]).then_some(plane)
     }
 

@@ -75,7 +75,8 @@ impl Axial for PrismFisheye {
     }
 
     fn plane(&self) -> Option<Plane> {
-        Some(Plane { k: self.k, p: self.p, s: self.s, s4: [0.0; 2] })
+        let [k1, k2, k3, k4] = self.k;
+        Some(Plane { k: [k1, k2, k3, k4, 0.0, 0.0], p: self.p, s: self.s, s4: [0.0; 2] })
     }
 
     fn plane_parameters(&self) -> &'static [usize] {

@@ -107,7 +107,7 @@ impl Axial for RadTanPrismFisheye {
 
     fn plane(&self) -> Option<Plane> {
         let ([p0, p1], [s0, s1, s2, s3]) = (self.p, self.s);
-        Some(Plane { k: [0.0; 4], p: [p1, p0], s: [s0, s2], s4: [s1, s3] })
+        Some(Plane { k: [0.0; 6], p: [p1, p0], s: [s0, s2], s4: [s1, s3] })
     }
 
     fn plane_parameters(&self) -> &'static [usize] {

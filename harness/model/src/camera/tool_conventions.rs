@@ -67,13 +67,15 @@ pub const MRCAL: Convention = Convention {
 /// OpenSfM and ODM.
 pub const OPENSFM: Convention = Convention {
     name: "opensfm",
-    about: "OpenSfM, OpenDroneMap: perspective, brown, fisheye, in units of the longer side",
-    version: "camera_models.json, cameras.json",
+    about: "OpenSfM, OpenDroneMap: perspective, brown, fisheye, fisheye_opencv, fisheye62, fisheye624, in units of the longer side",
+    version: "camera_models.json, cameras.json, reconstruction.json",
     pixel_origin: PixelOrigin::FrameCentre,
     principal_point_from: PixelOrigin::FrameCentre,
     normalisation: "divided by the focal length, which is in units of the longer side of the image",
     source: "OpenSfM's documentation, Geometric models: normalised image coordinates from the centre of the image",
-    verification: Verification::Unverified("formulas and origin after its documentation; no projected point of it was at hand"),
+    verification: Verification::Unverified(
+        "formulas and origin after its documentation and the points that its own functions project, compiled; its package is in no index",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -193,6 +195,41 @@ pub const PHOTOMODELER: Convention = Convention {
         "formulas after its help; whether y points up there is not stated (up is assumed), and no file of it was at hand: names of keys are after the help's dialog",
     ),
     ..photogrammetric::CONVENTION
+};
+
+/// Gyroflow.
+pub const GYROFLOW: Convention = Convention {
+    name: "gyroflow",
+    about: "Gyroflow lens profiles: opencv_fisheye, opencv_standard, poly3, poly5, ptlens",
+    version: "1",
+    source: "Gyroflow's source, lens profiles and distortion models",
+    verification: Verification::Unverified(
+        "formulas after its source; what (0, 0) is it does not say: the centre of the first pixel is assumed, as OpenCV's corners have it",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// MATLAB.
+pub const MATLAB: Convention = Convention {
+    name: "matlab",
+    about: "MATLAB cameraIntrinsics, cameraParameters: FocalLength, PrincipalPoint, RadialDistortion, TangentialDistortion, Skew; the first pixel's centre is (1, 1)",
+    version: "",
+    normalisation: "divided by the focal lengths, px, which count from 1",
+    source: "MathWorks' documentation, cameraIntrinsics and What Is Camera Calibration",
+    verification: Verification::Unverified("formulas and origin after its documentation; no projected point of it was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// OpenUSD with Omniverse's schemas.
+pub const USD: Convention = Convention {
+    name: "usd",
+    about: "OpenUSD omni:lensdistortion: opencvPinhole, opencvFisheye",
+    version: "OmniLensDistortion schemas",
+    source: "Omniverse's lens distortion schemas and Isaac Sim's documentation: OpenCV's models by name",
+    verification: Verification::Unverified(
+        "OpenCV's models by name; usd-core reads what is written, no rendered point was at hand; what (0, 0) is it does not say: the centre of the first pixel is assumed",
+    ),
+    ..opencv::CONVENTION
 };
 
 /// Bouguet's toolbox.

@@ -52,10 +52,10 @@ pub(super) trait Axial {
     }
 }
 
-/// `x q + 2 p1 x y + p2 (r2 + 2 x^2) + s1 r2 + s3 r2^2`, `y q + p1 (r2 + 2 y^2) + 2 p2 x y + s2 r2 + s4 r2^2` with `q = 1 + k1 r2 + ... + k4 r2^4`.
+/// `x q + 2 p1 x y + p2 (r2 + 2 x^2) + s1 r2 + s3 r2^2`, `y q + p1 (r2 + 2 y^2) + 2 p2 x y + s2 r2 + s4 r2^2` with `q = 1 + k1 r2 + ... + k6 r2^6`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
-    pub(super) k: [f64; 4],
+    pub(super) k: [f64; 6],
     /// In OpenCV's order.
     pub(super) p: [f64; 2],
     /// s1, s2.
@@ -65,23 +65,25 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// d(value) / d(k1, k2, p1, p2, k3, k4, s1, s2, s3, s4).
-    fn by_coefficients([x, y]: [f64; 2]) -> [[f64; 2]; 10] {
+    /// d(value) / d(k1, k2, p1, p2, k3, k4, s1, s2, s3, s4, k5, k6).
+    fn by_coefficients([x, y]: [f64; 2]) -> [[f64; 2]; 12] {
         let r2 = x * x + y * y;
         let radial = |power: i32| [x * r2.powi(power), y * r2.powi(power)];
         let tangential = [[2.0 * x * y, r2 + 2.0 * y * y], [r2 + 2.0 * x * x, 2.0 * x * y]];
-        [radial(1), radial(2), tangential[0], tangential[1], radial(3), radial(4), [r2, 0.0], [0.0, r2], [r2 * r2, 0.0], [0.0, r2 * r2]]
+        let prism = [[r2, 0.0], [0.0, r2], [r2 * r2, 0.0], [0.0, r2 * r2]];
+        let [s1, s2, s3, s4] = prism;
+        [radial(1), radial(2), tangential[0], tangential[1], radial(3), radial(4), s1, s2, s3, s4, radial(5), radial(6)]
     }
 }
 
 impl PlaneMap for Plane {
     fn map(&self, [x, y]: [f64; 2]) -> ValueAndDerivatives {
-        let ([k1, k2, k3, k4], [p1, p2]) = (self.k, self.p);
+        let ([k1, k2, k3, k4, k5, k6], [p1, p2]) = (self.k, self.p);
         let r2 = x * x + y * y;
         // The prism's terms and their derivatives by r2.
         let prism: [(f64, f64); 2] = [0, 1].map(|i| (r2 * (self.s[i] + r2 * self.s4[i]), self.s[i] + 2.0 * r2 * self.s4[i]));
-        let q = 1.0 + r2 * (k1 + r2 * (k2 + r2 * (k3 + r2 * k4)));
-        let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3 + r2 * 4.0 * k4)));
+        let q = 1.0 + r2 * (k1 + r2 * (k2 + r2 * (k3 + r2 * (k4 + r2 * (k5 + r2 * k6)))));
+        let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3 + r2 * (4.0 * k4 + r2 * (5.0 * k5 + r2 * 6.0 * k6)))));
         let cross = x * y * slope + 2.0 * (p1 * x + p2 * y);
         let value = [
             x * q + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x) + prism[0].0,

@@ -84,6 +84,8 @@ pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> boo
         | Target::Fov
         | Target::PrismFisheye
         | Target::RadTanPrismFisheye
+        | Target::SixPrismFisheye { .. }
+        | Target::PtLens { .. }
         | Target::MetashapeFisheye { .. } => false,
     }
 }

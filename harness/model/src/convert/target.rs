@@ -3,8 +3,9 @@
 use super::ConvertError;
 use super::brown::BrownForm;
 use crate::camera::{
-    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize, MicMac,
-    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize,
+    LensProjection, MicMac, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
+    TangentialOrder,
 };
 
 /// A convention with its shape. Terms that the shape leaves out are zero.
@@ -75,6 +76,16 @@ pub enum Target {
     PrismFisheye,
     /// Fisheye, then decentring and thin prism.
     RadTanPrismFisheye,
+    /// Fisheye with six radial coefficients, decentring and thin prism.
+    SixPrismFisheye {
+        /// Holds s0 to s3.
+        prism: bool,
+    },
+    /// PanoTools' a, b, c.
+    PtLens {
+        /// How the lens pictures angles.
+        projection: LensProjection,
+    },
     /// Metashape's fisheye.
     MetashapeFisheye {
         /// How it pictures angles.
@@ -154,6 +165,10 @@ impl Target {
             Self::RadTanPrismFisheye => {
                 RadTanPrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()
             }
+            Self::SixPrismFisheye { .. } => {
+                SixPrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()
+            }
+            Self::PtLens { projection } => PtLens { size, projection, f: 1.0, cx: 0.0, cy: 0.0, a: 0.0, b: 0.0, c: 0.0 }.into(),
             Self::MetashapeFisheye { projection } => {
                 AgisoftFisheye { size, projection, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 2] }.into()
             }
@@ -182,6 +197,7 @@ impl Target {
             Self::OpenCvFisheye => vec!["skew", "alpha"],
             Self::Division => vec!["alpha"],
             Self::Centred { radial } => [&["cx", "cy"], &K[radial..], &P[..], &B[..]].concat(),
+            Self::SixPrismFisheye { prism: false } => vec!["s0", "s1", "s2", "s3"],
             Self::Omni { distortion: false } => [&K[..2], &P[..2]].concat(),
             Self::MicMac { radial, tangential, affinity: b } => {
                 const FIVE: [&str; 5] = ["k1", "k2", "k3", "k4", "k5"];
@@ -196,6 +212,8 @@ impl Target {
             | Self::Fov
             | Self::PrismFisheye
             | Self::RadTanPrismFisheye
+            | Self::SixPrismFisheye { prism: true }
+            | Self::PtLens { .. }
             | Self::MetashapeFisheye { .. } => Vec::new(),
         }
     }

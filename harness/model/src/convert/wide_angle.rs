@@ -4,7 +4,8 @@ use super::Target;
 use super::brown::BrownForm;
 use crate::PixelPoint;
 use crate::camera::{
-    AgisoftFisheye, Camera, DoubleSphere, Eucm, FisheyeProjection, Fov, ImageSize, Omni, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye,
+    AgisoftFisheye, Camera, DoubleSphere, Eucm, FisheyeProjection, Fov, ImageSize, LensProjection, Omni, OpenCv, OpenCvFisheye,
+    PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
 };
 
 /// The same camera in the target's convention where a formula leads to it; `None` where there is none or the target cannot hold all terms.
@@ -18,6 +19,13 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
         | (Camera::Eucm(Eucm { alpha: 0.5, .. }), Target::Division) => Some(*source),
         // Tools bound beta from below by zero.
         (Camera::Eucm(from), Target::Eucm) if from.beta > 0.0 => Some(*source),
+        (Camera::SixPrismFisheye(from), Target::SixPrismFisheye { prism }) => (*prism || from.s == [0.0; 4]).then_some(*source),
+        (_, Target::SixPrismFisheye { prism }) => to_six(source).filter(|six| *prism || six.s == [0.0; 4]).map(Camera::from),
+        (Camera::SixPrismFisheye(from), _) => exact(&of_six(from)?.into(), target),
+        (Camera::PtLens(from), Target::PtLens { projection }) => (from.projection == *projection).then_some(*source),
+        (_, Target::PtLens { projection }) => to_pt_lens(source, *projection),
+        (Camera::PtLens(from), Target::OpenCvFisheye) => of_pt_lens(from).filter(|camera| matches!(camera, Camera::OpenCvFisheye(_))),
+        (Camera::PtLens(from), _) => exact(&of_pt_lens(from)?, target),
         (Camera::OpenCvFisheye(from), Target::RadTanPrismFisheye) => then_prism(from),
         (Camera::OpenCvFisheye(from), Target::PrismFisheye) => with_prism(from),
         (Camera::PrismFisheye(from), Target::OpenCvFisheye) => without_prism(from),
@@ -44,6 +52,57 @@ fn then_prism(from: &OpenCvFisheye) -> Option<Camera> {
 fn without_prism(from: &PrismFisheye) -> Option<Camera> {
     let PrismFisheye { size, fx, fy, cx, cy, k, p, s } = *from;
     (p == [0.0; 2] && s == [0.0; 2]).then(|| OpenCvFisheye { size, fx, fy, cx, cy, skew: 0.0, k }.into())
+}
+
+/// One with four radial coefficients and less of a prism as one with six.
+fn to_six(source: &Camera) -> Option<SixPrismFisheye> {
+    let from = match source {
+        Camera::OpenCvFisheye(from) => with_prism(from)?,
+        Camera::AgisoftFisheye(from) => equidistant(from)?.into(),
+        _ => *source,
+    };
+    let Camera::PrismFisheye(PrismFisheye { size, fx, fy, cx, cy, k: [k1, k2, k3, k4], p, s: [s0, s2] }) = from else { return None };
+    Some(SixPrismFisheye { size, fx, fy, cx, cy, k: [k1, k2, k3, k4, 0.0, 0.0], p, s: [s0, 0.0, s2, 0.0] })
+}
+
+fn of_six(from: &SixPrismFisheye) -> Option<PrismFisheye> {
+    let SixPrismFisheye { size, fx, fy, cx, cy, k: [k1, k2, k3, k4, k5, k6], p, s: [s0, s1, s2, s3] } = *from;
+    ([k5, k6, s1, s3] == [0.0; 4]).then_some(PrismFisheye { size, fx, fy, cx, cy, k: [k1, k2, k3, k4], p, s: [s0, s2] })
+}
+
+/// A lens of one focal length whose distortion is of the square of the radius alone, in PanoTools' words.
+fn to_pt_lens(source: &Camera, projection: LensProjection) -> Option<Camera> {
+    let lens = |size: ImageSize, f: f64, centre: PixelPoint, b: f64| -> Option<Camera> {
+        let (cx, cy) = (centre.x, centre.y);
+        Some(PtLens { size, projection, f, cx, cy, a: 0.0, b, c: 0.0 }.into())
+    };
+    match (source, projection) {
+        (Camera::OpenCvFisheye(OpenCvFisheye { size, fx, fy, cx, cy, skew: 0.0, k: [k1, 0.0, 0.0, 0.0] }), LensProjection::Equidistant)
+            if fx == fy =>
+        {
+            lens(*size, *fx, PixelPoint::new(*cx, *cy), *k1)
+        }
+        (_, LensProjection::Rectilinear) => {
+            let form = BrownForm::of(source).filter(|_| BrownForm::holds(source))?;
+            let held = form.b == 0.0 && form.a == form.d && form.k[1..] == [0.0; 3] && form.p == [0.0; 4];
+            held.then(|| lens(form.size, form.a, form.centre, form.k[0]))?
+        }
+        _ => None,
+    }
+}
+
+/// The lens in the words of OpenCV where it has only such terms.
+fn of_pt_lens(from: &PtLens) -> Option<Camera> {
+    let PtLens { size, projection, f, cx, cy, a: 0.0, b, c: 0.0 } = *from else { return None };
+    match projection {
+        LensProjection::Equidistant => Some(OpenCvFisheye { size, fx: f, fy: f, cx, cy, skew: 0.0, k: [b, 0.0, 0.0, 0.0] }.into()),
+        LensProjection::Rectilinear => {
+            let mut distortion = [0.0; 14];
+            distortion[0] = b;
+            Some(OpenCv { size, fx: f, fy: f, cx, cy, distortion, coefficients: 4 }.into())
+        }
+        _ => None,
+    }
 }
 
 /// Metashape's equidistant fisheye as one with a prism, which has no shear.
@@ -142,6 +201,12 @@ pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
                 other => other,
             };
             to_metashape(&plain.into()).map(as_asked).into_iter().collect()
+        }
+        Target::SixPrismFisheye { .. } => vec![SixPrismFisheye { size, fx, fy, cx, cy, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()],
+        Target::PtLens { projection } => {
+            // Thoby's radius is longer than the angle already on the axis.
+            let f = 0.5 * (fx + fy) / PtLens::slope_on_axis(*projection);
+            vec![PtLens { size, projection: *projection, f, cx, cy, a: 0.0, b: 0.0, c: 0.0 }.into()]
         }
         Target::RadTanPrismFisheye => {
             vec![RadTanPrismFisheye { size, fx, fy, cx, cy, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()]

@@ -3,14 +3,14 @@
 use super::*;
 use crate::NamedCamera;
 use crate::camera::{
-    Agisoft, AgisoftFisheye, AgisoftVersion, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, MicMac, Omni, OpenCv,
-    OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, LensProjection, MicMac, Omni,
+    OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye, TangentialOrder,
 };
 use crate::named_camera::{ParameterCovariance, Pose};
 
 const SIZE: ImageSize = ImageSize { width: 1201, height: 900 };
 /// How many models there are: [`place`] names them.
-const MODELS: usize = 14;
+const MODELS: usize = 16;
 
 /// The place of a model. A new one has to be named here, and then to stand among [`all`].
 fn place(camera: &Camera) -> usize {
@@ -29,6 +29,8 @@ fn place(camera: &Camera) -> usize {
         Camera::PrismFisheye(_) => 11,
         Camera::RadTanPrismFisheye(_) => 12,
         Camera::MicMac(_) => 13,
+        Camera::PtLens(_) => 14,
+        Camera::SixPrismFisheye(_) => 15,
     }
 }
 
@@ -59,6 +61,18 @@ fn all() -> Vec<Camera> {
         Eucm { size, fx: 450.0, fy: 451.0, cx, cy, alpha: 0.6, beta: 1.1 }.into(),
         Omni { size, fx: 1100.0, fy: 1101.0, cx, cy, xi: 1.3, k: [-0.1, 0.02], p }.into(),
         Fov { size, fx, fy, cx, cy, w: 0.8 }.into(),
+        PtLens { size, projection: LensProjection::Stereographic, f: 700.0, cx, cy, a: 0.01, b: -0.03, c: -0.005 }.into(),
+        SixPrismFisheye {
+            size,
+            fx: 420.0,
+            fy: 421.0,
+            cx,
+            cy,
+            k: [-0.02, 0.003, -0.001, 1e-4, 1e-5, -1e-6],
+            p,
+            s: [1e-4, -2e-4, 2e-4, 1e-4],
+        }
+        .into(),
         PrismFisheye { size, fx, fy, cx, cy, k, p, s: [1e-4, -2e-4] }.into(),
         RadTanPrismFisheye { size, fx, fy, cx, cy, k: [-0.01, 0.002, 0.0, 0.0, 1e-4, 0.0], p, s: [1e-4, -2e-4, 2e-4, 1e-4] }.into(),
         MicMac {
