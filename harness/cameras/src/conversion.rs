@@ -99,7 +99,7 @@ pub fn converted(
 /// `source` as it is, in its own convention.
 pub fn unchanged(source: &NamedCamera) -> Converted {
     let camera = NamedCamera { notes: Vec::new(), ..source.clone() };
-    Converted { conversion: splined::as_they_are(camera.camera), camera, model: None }
+    Converted { conversion: splined::as_they_are(camera.camera), camera, model: None, held_exactly: None }
 }
 
 /// Whether none of the goal's models has a formula for the camera, and yet a file of the format gives it back: what the tool holds beyond the models that others are

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use calibench_cameras::conversion::{ConversionError, Converted, converted, unchanged};
 use calibench_cameras::fit::{FitError, calibrated_models, losses};
 use calibench_cameras::target::{Given, TargetError, goal};
-use calibench_cameras::{CameraFormat, inputs_of};
+use calibench_cameras::{CameraFormat, format_named, inputs_of};
 use calibench_diagnostics::nearest;
 use calibench_files::{Inputs, OutputFile};
 use calibench_model::NamedCamera;
