@@ -80,7 +80,8 @@ fn a_file_without_a_size_takes_it_and_no_other() {
     std::fs::write(folder.path().join("bare.yml"), bare).unwrap();
     let at = |name: &str| folder.path().join(name);
     good(folder.path(), &["convert", "bare.yml", "--size", "1600x1200", "--to", "opencv", "-o", "stated.yml"]);
-    assert_eq!(camera(&at("stated.yml")), camera(&at("camera.yml")));
+    // With the fewest coefficients that hold it.
+    agrees(&camera(&at("camera.yml")), &camera(&at("stated.yml")), |ray| ray, same_place);
     good(folder.path(), &["convert", "bare.yml", "--size", "1600x1200", "--crop", "0,0,800,600", "--scale", "2", "-o", "part.yml"]);
     good(folder.path(), &["convert", "camera.yml", "--crop", "0,0,800,600", "--size", "1600x1200", "-o", "same.yml"]);
     assert_eq!(camera(&at("part.yml")), camera(&at("same.yml")));
