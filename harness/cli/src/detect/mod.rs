@@ -173,12 +173,8 @@ impl Detect {
             say!("{}: {remark}", path.display());
         });
         if let Some(folder) = draw {
-            let one = |found: &Result<Coded, NotRecognised>| match found {
-                Ok(coded) => Drawn { rows: coded.rows.iter().collect(), why: None },
-                Err(why) => Drawn { rows: Vec::new(), why: Some(why.to_string()) },
-            };
             // What is not flat has no neighbours that say where a target must be.
-            let drawn: Vec<Drawn<'_>> = found.iter().map(one).collect();
+            let drawn: Vec<Drawn<'_>> = found.iter().map(of_field).collect();
             draw::draw(&folder, &reader, &drawn, &[])?;
         }
         if rows.is_empty() {
@@ -217,6 +213,14 @@ fn instead(reader: &Reader, asked: &Board) -> Result<String, Failure> {
         }
     }
     Ok(String::new())
+}
+
+/// What was recognised of a field in a photograph, to be drawn.
+fn of_field(found: &Result<Coded, NotRecognised>) -> Drawn<'_> {
+    match found {
+        Ok(coded) => Drawn { rows: coded.rows.iter().collect(), why: None },
+        Err(why) => Drawn { rows: Vec::new(), why: Some(why.to_string()) },
+    }
 }
 
 /// Says how each of several boards is measured, where several are seen and one was asked for.
