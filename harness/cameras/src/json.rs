@@ -120,8 +120,9 @@ impl Reader<'_> {
 
     fn map(&mut self, depth: usize) -> Result<Value, CameraFileError> {
         self.step();
-        let mut entries = Vec::new();
-        while !self.ends(b'}', entries.is_empty())? {
+        let (mut entries, mut first) = (Vec::new(), true);
+        while !self.ends(b'}', first)? {
+            first = false;
             let name = match self.peek() {
                 Some(b'"') => self.string()?,
                 Some(b'\'') if self.python => self.string()?,

@@ -26,7 +26,6 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         let mut models: Vec<Model> =
             [(4, "opencv4"), (5, "opencv5"), (8, "opencv8"), (12, "opencv12"), (14, "opencv14")].map(pinhole).into();
         models.push(Model { name: "opencv-fisheye", target: Target::OpenCvFisheye });
-        models.push(Model { name: "opencv-omnidir", target: Target::Omni { distortion: true } });
         models
     },
     keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::Variances },

@@ -1,6 +1,6 @@
 //! OpenSfM's and OpenDroneMap's camera_models.json, camera_models_overrides.json, cameras.json, reconstruction.json: units of the longer side, from the middle.
 
-use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCvFisheye, PrismFisheye, SixPrismFisheye, tool_conventions};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCvFisheye, SixPrismFisheye, tool_conventions};
 use calibench_model::convert::Target;
 use calibench_model::{NamedCamera, PixelPoint};
 
@@ -161,14 +161,7 @@ fn parts(camera: &Camera) -> Option<(&'static str, Vec<f64>)> {
         }
         return Some(("fisheye_opencv", [head(fx, fy, cx, cy), k.to_vec()].concat()));
     }
-    let six = match *camera {
-        Camera::SixPrismFisheye(six) => Some(six),
-        Camera::PrismFisheye(PrismFisheye { size, fx, fy, cx, cy, k: [k1, k2, k3, k4], p, s: [s0, s2] }) => {
-            Some(SixPrismFisheye { size, fx, fy, cx, cy, k: [k1, k2, k3, k4, 0.0, 0.0], p, s: [s0, 0.0, s2, 0.0] })
-        }
-        _ => None,
-    };
-    if let Some(SixPrismFisheye { fx, fy, cx, cy, k, p, s, .. }) = six {
+    if let Camera::SixPrismFisheye(SixPrismFisheye { fx, fy, cx, cy, k, p, s, .. }) = *camera {
         let (name, prism) = if s == [0.0; 4] { ("fisheye62", &s[..0]) } else { ("fisheye624", &s[..]) };
         return Some((name, [&head(fx, fy, cx, cy)[..], &k, &p, prism].concat()));
     }

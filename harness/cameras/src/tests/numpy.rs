@@ -53,7 +53,7 @@ fn what_is_written_is_read_again() {
     ];
     let covariance = ParameterCovariance::new(vec!["fx".into(), "k1".into()], vec![1.0, 0.0, 0.0, 0.25]).unwrap();
     for camera in cameras {
-        let camera = NamedCamera { covariance: Some(covariance.clone()), ..NamedCamera::new("küche \"1\"", camera) };
+        let camera = NamedCamera { covariance: Some(covariance.clone()), ..NamedCamera::new("küche \"1\" a", camera) };
         let bytes = camera_bytes(format_named("numpy").unwrap(), std::slice::from_ref(&camera)).unwrap();
         let read = parse_camera("f", &bytes, &ReadOptions::default()).unwrap();
         super::assert_same(&read.cameras, std::slice::from_ref(&camera), 1e-15);

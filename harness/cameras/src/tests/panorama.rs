@@ -179,7 +179,7 @@ fn a_project_is_read_with_a_camera_for_each_image() {
         ("v60 ", "v=1 ", "f:7, `v`: is that of an image that takes it from this one"),
         ("g0 ", "g1.5 ", "f:7, `g`: is 1.5: a shear of the image"),
         ("a0.01", "a1.5", "f:7, `a`: a, b, c leave"),
-        ("b-0.03", "bx", "f:7, `b`: expected a finite number"),
+        ("b-0.03", "b-0.x3", "f:7, `b`: expected a finite number"),
         ("w640 h480 f0", "w640 h0 f0", "f:7, `h`: expected a whole number of pixels"),
         ("j0", "j0 K3", "f:7, `K`: is no key that is known of a lens"),
         ("j0", "j0 S10,600,10,400", "f:7, `S`: a part of the image is used"),

@@ -180,7 +180,7 @@ const MISTAKES: [(&str, &str, &str, &str); 56] = [
     (BASALT, "\"qw\": 1", "\"qw\": 0", "f:2: expected a quaternion, found one of no length"),
     (CAMODOCAL, "MEI", "SCARAMUZZA", "f:3, `model_type`: `SCARAMUZZA` is not known; expected MEI"),
     (CAMODOCAL, "   gamma2: 701.\n", "", "`projection_parameters`: has no `gamma2`"),
-    (OPENSFM, "\"brown\"", "\"spherical\"", "f:3, `v2 a.projection_type`: `spherical` is not known; expected perspective"),
+    (OPENSFM, "\"brown\"", "\"spherical\"", "f:3, `v2 a.projection_type`: `spherical` is no camera model here; expected perspective"),
     (OPENSFM, "0.8,", "-0.8,", "`v2 a.focal_x`: expected a number above zero"),
     (NERFSTUDIO, "\"OPENCV\"", "\"EQUIRECTANGULAR\"", "f:1, `frames[0].camera_model`: `EQUIRECTANGULAR` is not known"),
     (NERFSTUDIO, "[0, 1, 0, 2]", "[0, 1, 2]", "f:3, `frames[0].transform_matrix`: expected 4 x 4 numbers"),
