@@ -79,9 +79,8 @@ fn parts(bytes: &[u8]) -> Result<(&str, &[u8]), CameraFileError> {
     let (length, rest) = match rest {
         [1, _, a, b, rest @ ..] => (usize::from(u16::from_le_bytes([*a, *b])), rest),
         [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]) as usize, rest),
-        [1..=3, ..] => return Err(short()),
+        [1..=3, ..] | [] => return Err(short()),
         [version, ..] => return Err(CameraFileError::new(format!("version {version} of .npy is not known; expected 1 to 3"))),
-        [] => return Err(short()),
     };
     let (head, data) = rest.split_at_checked(length).ok_or_else(short)?;
     let head = std::str::from_utf8(head).map_err(|_| CameraFileError::new("the head of NumPy's array is no text"))?;

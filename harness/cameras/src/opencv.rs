@@ -239,7 +239,7 @@ fn size_in_one(entry: &Entry) -> Result<ImageSize, CameraFileError> {
             return Ok(ImageSize { width: side(0)?, height: side(1)? });
         }
         Value::List(items) => items.iter().map(Entry::text).collect::<Result<_, _>>()?,
-        _ => entry.text()?.split_whitespace().collect(),
+        Value::Scalar(_) => entry.text()?.split_whitespace().collect(),
     };
     match words[..] {
         [width, height] => Ok(ImageSize { width: pixels(width)?, height: pixels(height)? }),

@@ -238,6 +238,7 @@ impl Reading {
 }
 
 /// A camera file: a long list that is read in pieces, or all of it.
+#[expect(clippy::large_enum_variant, reason = "one at a time")]
 pub enum Opened {
     List(CameraList),
     Whole(CameraFile),

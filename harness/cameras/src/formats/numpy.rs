@@ -91,8 +91,11 @@ fn members<T>(
     Ok(found)
 }
 
+/// An array and its name.
+type Named = (String, Entry);
+
 /// The arrays of an archive, and the names of those that hold Python objects.
-fn arrays(bytes: &[u8]) -> Result<(Vec<(String, Entry)>, Vec<String>), CameraFileError> {
+fn arrays(bytes: &[u8]) -> Result<(Vec<Named>, Vec<String>), CameraFileError> {
     let all = members(bytes, |name, unpacked| {
         let Some(name) = name else { return Ok(None) };
         let bytes = unpacked()?;

@@ -44,11 +44,14 @@ const PREFIX: &str = "omni:lensdistortion:";
 const PINHOLE: [&str; 12] = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4"];
 const FISHEYE: [&str; 4] = ["k1", "k2", "k3", "k4"];
 
+/// A value and its name.
+type Named = (String, Entry);
+
 /// The attributes of the lens distortion of each prim that has some, called by what follows the prefix.
-fn prims(source: &Source<'_>) -> Result<Vec<(String, Entry)>, CameraFileError> {
+fn prims(source: &Source<'_>) -> Result<Vec<Named>, CameraFileError> {
     let mut open: Vec<Option<String>> = Vec::new();
     let mut next: Option<String> = None;
-    let mut found: Vec<(String, usize, Vec<(String, Entry)>)> = Vec::new();
+    let mut found: Vec<(String, usize, Vec<Named>)> = Vec::new();
     for (number, line) in source.lines() {
         let defines = ["def ", "over ", "class "].iter().any(|word| line.starts_with(word));
         if let (true, Some(name)) = (defines, line.split('"').nth(1)) {

@@ -108,7 +108,7 @@ fn formats() -> Vec<Listed> {
             ("versions", format.versions.to_string()),
             ("access", if format.is_written() { "read and written" } else { "read" }.to_owned()),
             ("models", models.join(", ")),
-            ("verified", format.verified.map_or_else(String::new, |proof| proof.to_string())),
+            ("verified", format.verified.map_or_else(String::new, ToString::to_string)),
         ];
         Listed::new(format.name, format.tool, facts)
     });

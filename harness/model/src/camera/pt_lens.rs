@@ -184,9 +184,9 @@ impl PtLens {
         for _ in 0..MOST_STEPS {
             let (value, slope) = lens.polynomial(u);
             if value <= goal {
-                low = u
+                low = u;
             } else {
-                high = u
+                high = u;
             }
             let newton = u - (value - goal) / slope;
             let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };

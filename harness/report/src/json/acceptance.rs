@@ -51,6 +51,7 @@ struct Source {
 }
 
 #[derive(Serialize, JsonSchema)]
+#[expect(clippy::struct_field_names, reason = "they are the keys of the document")]
 struct Lengths {
     /// The limit of an error: A + K L, at most B.
     limit: LimitPart,
@@ -145,6 +146,7 @@ struct AccuracyPart {
 }
 
 #[derive(Serialize, JsonSchema)]
+#[expect(clippy::struct_field_names, reason = "they are the keys of the document")]
 struct Axis {
     /// X, Y or Z.
     axis: &'static str,
