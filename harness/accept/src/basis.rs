@@ -16,7 +16,7 @@ pub const OF_LENGTHS: [Basis; 5] = [
     Basis {
         standard: "VDI/VDE 2634 part 1",
         rule: "the error is the measured less the calibrated length, each against the limit A + K L, at most B",
-        by: "Luhmann et al., Close-Range Photogrammetry and 3D Imaging; Haig, Heipke & Wiggenhagen 2006 (ISPRS Archives XXXVI-5)",
+        by: "Luhmann et al., Close-Range Photogrammetry and 3D Imaging",
     },
     Basis {
         standard: "VDI/VDE 2634 part 1",
