@@ -145,8 +145,8 @@ pub fn read_camera_with(path: &Path, options: &ReadOptions) -> Result<CameraFile
     if colmap_images::are_images(&bytes) {
         return colmap_images::read(path, &bytes, options);
     }
-    if npy::is_array(&bytes) {
-        return npy_beside::read(path, &bytes, options);
+    if let Some(numpy) = format_named("numpy").filter(|_| npy::is_array(&bytes)) {
+        return npy_beside::read(path, &bytes, options, numpy);
     }
     parse_camera(&name, &bytes, options)
 }

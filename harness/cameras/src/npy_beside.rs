@@ -4,18 +4,17 @@ use std::path::{Path, PathBuf};
 
 use super::opencv_names::NO_DISTORTION;
 use super::tree::Entry;
-use super::{CameraFile, CameraFileError, ReadOptions, format_named, npy, opencv, recognised, source};
+use super::{CameraFile, CameraFileError, CameraFormat, ReadOptions, npy, opencv, recognised, source};
 
 /// Files beside it that an error names at most.
 const MOST_NAMED: usize = 10;
 
-/// The camera of the matrix in `bytes`, the file at `path`, and of the coefficients that `options` names.
+/// The camera of the matrix in `bytes`, the file at `path`, and of the coefficients that `options` names; `format` is that of NumPy's archives.
 ///
 /// # Errors
 /// No file of coefficients, what is no matrix or no coefficients, another format that was asked for.
-pub(super) fn read(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
+pub(super) fn read(path: &Path, bytes: &[u8], options: &ReadOptions, format: &'static CameraFormat) -> Result<CameraFile, CameraFileError> {
     let own = path.display().to_string();
-    let format = format_named("numpy").ok_or_else(|| CameraFileError::new("no such format"))?;
     if let Some(from) = options.from.filter(|from| *from != format) {
         return Err(CameraFileError::new(format!("is no file of {}: it is an array of NumPy's", from.name)).in_file(&own));
     }

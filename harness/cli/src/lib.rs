@@ -181,7 +181,10 @@ enum Command {
 /// The command line with all that its help says.
 fn command_line() -> clap::Command {
     let line = groups::with_groups(examples::with_examples(Arguments::command()));
-    line.mut_subcommand("convert", |convert| convert.mut_arg("size", |size| size.help(convert::SIZE)))
+    line.mut_subcommands(|command| match command.get_name() {
+        "convert" => command.mut_arg("size", |size| size.help(convert::SIZE)),
+        _ => command,
+    })
 }
 
 /// Runs the command line of this process.

@@ -19,7 +19,8 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{matrix, of_matrix, rows, table};
 use crate::boards::Board;
-use crate::camera::{Camera, size_of};
+use crate::camera::Camera;
+use crate::image_size::size_of;
 use crate::error::{CalibrationError, doubt, in_python, input};
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::points::{image_names, points};
@@ -215,7 +216,7 @@ pub fn calibrate(
         model,
         solve,
         priors: priors.unwrap_or_default().iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
-        start: start.map(|camera| Ok::<_, PyErr>(of_images(camera, size, "start: the camera")?.camera)).transpose()?,
+        start: start.map(|camera| Ok::<_, PyErr>(of_images(&camera.named, size, "start: the camera")?.camera)).transpose()?,
         ..Optics::new(size)
     };
     let settings = Settings {

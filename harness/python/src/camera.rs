@@ -22,6 +22,7 @@ use crate::arrays::{NOWHERE, of_matrix, of_positions, positions, rows, table};
 use crate::error::{camera as refused, doubt, input, lost};
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
+use crate::image_size::size_of;
 use crate::reframing::reframing;
 
 /// A camera: see `calibench.Camera`.
@@ -56,17 +57,6 @@ impl Camera {
         let Verification::Unverified(open) = self.named.camera.convention().verification else { return Ok(()) };
         doubt(py, &format!("unverified: {}: {open}", self.named.camera.convention().name))
     }
-}
-
-/// The size of images.
-///
-/// # Errors
-/// No columns or no rows.
-pub fn size_of(size: &Bound<'_, PyAny>) -> PyResult<ImageSize> {
-    let wrong = || input(format!("size: {size}; expected (columns, rows) of the images, px, as in (640, 480)"));
-    let Ok([width, height]) = size.extract::<[i64; 2]>() else { return Err(wrong()) };
-    let side = |side: i64| u32::try_from(side).ok().filter(|side| *side > 0).ok_or_else(wrong);
-    Ok(ImageSize { width: side(width)?, height: side(height)? })
 }
 
 #[pymethods]

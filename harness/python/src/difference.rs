@@ -63,7 +63,7 @@ pub fn diff(
             return Err(refused(doubt));
         }
     }
-    of_images(second, a.size(), "the images of the two cameras differ in size: the second")?;
+    of_images(&second.named, a.size(), "the images of the two cameras differ in size: the second")?;
     if points.is_some() && !rotation {
         return Err(input("points: the rotation is the best at these; with rotation=False there is none"));
     }

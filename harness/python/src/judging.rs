@@ -18,7 +18,8 @@ use pyo3::types::PyDict;
 
 use crate::boards::Board;
 use crate::calibrating::positive;
-use crate::camera::{Camera, size_of};
+use crate::camera::Camera;
+use crate::image_size::size_of;
 use crate::error::{doubt, input};
 use crate::measuring::Measured;
 use crate::pickled::{Pickled, Reduced, reduced};
@@ -127,7 +128,7 @@ pub fn judge(
 }
 
 fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<&Camera>) -> PyResult<Judgement> {
-    camera.map(|camera| of_images(camera, material.size, "camera: it")).transpose()?;
+    camera.map(|camera| of_images(&camera.named, material.size, "camera: it")).transpose()?;
     let options = Options {
         models: asked.models,
         pitch_um: asked.pitch_um,

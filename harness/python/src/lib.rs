@@ -17,6 +17,7 @@ mod league;
 mod listing;
 mod measuring;
 mod method;
+mod image_size;
 mod pickled;
 mod points;
 mod pool;

@@ -5,8 +5,8 @@ use calibench_model::camera::{ImageSize, Turn};
 use calibench_model::reframing::{Crop, FrameChange, Reframing, Scaling, same_camera};
 use pyo3::prelude::*;
 
-use crate::camera::{Camera, size_of};
 use crate::error::input;
+use crate::image_size::size_of;
 
 /// What is asked for, of images of the size `own`.
 ///
@@ -46,8 +46,7 @@ pub fn reframing(
 ///
 /// # Errors
 /// A camera of images of another size.
-pub fn of_images<'c>(camera: &'c Camera, size: ImageSize, what: &str) -> PyResult<&'c NamedCamera> {
-    let other = same_camera(&camera.named, size, false).err();
-    let Some(other) = other else { return Ok(&camera.named) };
+pub fn of_images<'c>(camera: &'c NamedCamera, size: ImageSize, what: &str) -> PyResult<&'c NamedCamera> {
+    let Some(other) = same_camera(camera, size, false).err() else { return Ok(camera) };
     Err(input(format!("{what} {other}; its method `reframe` gives the same camera in other images")))
 }

@@ -36,6 +36,12 @@ pub fn doubtful(rows: &[&PointRow], control: &[ControlRow]) -> Vec<(usize, f64)>
         left_out[place] = true;
         found.push((place, px));
     }
+    // What was found after it was among the neighbours that judged the first.
+    for (place, px) in &mut found {
+        let again = pairs[*place].and_then(|pair| off(*place, pair, &pairs, &left_out));
+        *px = again.unwrap_or(*px);
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
     found
 }
 

@@ -26,7 +26,7 @@ const FOLDER: &str = "board";
 #[derive(Args)]
 pub struct Print {
     /// Name of a scenario, or a TOML file
-    #[arg(required_unless_present = "board", conflicts_with = "board")]
+    #[arg(conflicts_with = "board")]
     scenario: Option<String>,
     #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP)]
     board: Option<Board>,
@@ -34,7 +34,7 @@ pub struct Print {
     #[arg(long, value_enum, default_value_t, requires = "board")]
     unit: Unit,
     /// The folder; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused [default: with --board the folder `board`]
-    #[arg(short, long, value_name = "DIR", required_unless_present = "board")]
+    #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Pages as large as each plate, or this paper: a board must fit on one sheet, the plates of a scenario become tiles with marks to join them
     #[arg(long, value_enum, default_value_t = Size::Whole, ignore_case = true)]
@@ -89,9 +89,13 @@ impl Print {
         let Sheets { field, options, board, inputs, project } = match (self.board, &self.scenario) {
             (Some(board), _) => self.of_board(board)?,
             (None, Some(scenario)) => self.of_scenario(context, scenario)?,
-            (None, None) => return Err(Failure::input("expected --board or a scenario")),
+            (None, None) => return Err(Failure::input("expected --board BOARD, as in 9x6:25, or the name of a scenario")),
         };
-        let folder = self.output.as_deref().unwrap_or(Path::new(FOLDER));
+        let folder = match (&self.output, self.board) {
+            (Some(output), _) => output.as_path(),
+            (None, Some(_)) => Path::new(FOLDER),
+            (None, None) => return Err(Failure::input("expected -o DIR: the folder for the sheets")),
+        };
         let output = output::folder("-o", folder, &inputs, ("print", project.as_deref()))?;
         let target = board.map(|board| kalibr_target(&board, 1e-3 * options.mm_per_unit));
         output.replace(|folder| {
