@@ -77,3 +77,4 @@ for tilt, (reference, again, openblas) in (("0.40", rows[:3]), ("0.02", rows[3:]
     print(f"tilt {tilt} rad: fx {reference[1]:.10f} by the reference, {openblas[1]:.10f} by OpenBLAS, {off[-1]:.1e} px apart")
 assert off[0] < 1e-8 < 1e-7 < off[1] < 1e-2, off
 PYTHON
+echo "as stated"
