@@ -2,7 +2,6 @@
 
 #![allow(clippy::needless_pass_by_value, reason = "Python hands values over")]
 
-mod accepting;
 mod arrays;
 mod boards;
 mod calibrating;
@@ -36,8 +35,6 @@ mod _calibench {
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python calls it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
-    #[pymodule_export]
-    use super::accepting::{accept_lengths, accept_points};
     #[pymodule_export]
     use super::boards::board;
     #[pymodule_export]
