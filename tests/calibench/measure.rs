@@ -130,7 +130,7 @@ fn bad_input_is_named_and_leaves_the_old_output() {
         (&["measure", "a.png", "--points", "p.csv"][..], "p.csv:2, column `y`: expected a finite number"),
         (&["measure", "a.png", "text.png", "--points", "good.csv"], "text.png: not an image"),
         (&["measure", "a.png", "sub/a.png", "--points", "good.csv"], "two photographs are called a.png"),
-        (&["measure", "a.png", "sub", "--points", "good.csv"], "sub: is a folder"),
+        (&["measure", "a.png", "sub", "--points", "good.csv"], "two photographs are called a.png: a.png and sub/a.png"),
         (
             &["measure", "c.png", "--points", "good.csv"],
             "no point is of a photograph that was given: points name `deep.png`, the photographs are called `c.png`",

@@ -129,5 +129,5 @@ fn every_corner_of_a_photograph_has_a_row() {
     assert!(rows.iter().filter(|row| row["status"] == "rejected").all(|row| row["reason"].contains("forstner") && row["vx"].is_empty()));
     assert!(rows.iter().any(|row| row["image"] == "black.png" && row["reason"].contains("no board of 9 x 6 inner corners")));
     let page = std::fs::read_to_string(folder.path().join("report/README.md")).unwrap();
-    assert!(page.contains("targets were not measured"), "{page}");
+    assert!(page.contains("were not measured: the method rejected them"), "{page}");
 }

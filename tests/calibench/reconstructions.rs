@@ -9,8 +9,9 @@ use crate::project::{root, run, stderr, stdout};
 
 fn example() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("sparse")).unwrap();
     for name in ["cameras.txt", "images.txt", "points3D.txt"] {
-        std::fs::copy(root().join("examples/reconstruction").join(name), folder.path().join(name)).unwrap();
+        std::fs::copy(root().join("examples/reconstruction").join(name), folder.path().join("sparse").join(name)).unwrap();
     }
     folder
 }
@@ -42,7 +43,7 @@ fn solved(found: &Value, camera: usize, name: &str) -> [f64; 2] {
 #[test]
 fn the_camera_of_a_coarse_model_is_found_and_the_wrong_point_left_out() {
     let folder = example();
-    let (code, found, said) = answer(folder.path(), &[".", "--sigma", "0.4", "--adjusted", "better"]);
+    let (code, found, said) = answer(folder.path(), &["sparse", "--sigma", "0.4", "--adjusted", "better"]);
     assert_eq!(code, Some(0), "{}", found["doubts"]);
     assert!(said.contains("COLMAP: 1 cameras, 14 images, 60 points, 748 image points"), "{said}");
     for (name, truth) in [("f", 1250.0), ("k1", -0.085), ("k2", 0.03)] {
@@ -64,7 +65,7 @@ fn the_camera_of_a_coarse_model_is_found_and_the_wrong_point_left_out() {
 fn what_is_solved_for_is_what_was_asked() {
     let folder = example();
     let unknowns = |more: &[&str]| {
-        let (_, found, _) = answer(folder.path(), &[&[".", "--sigma", "0.4", "--plain"], more].concat());
+        let (_, found, _) = answer(folder.path(), &[&["sparse", "--sigma", "0.4", "--plain"], more].concat());
         (number(&found["counts"]["unknowns"]) as i64, found)
     };
     let (own, _) = unknowns(&[]);
@@ -76,7 +77,7 @@ fn what_is_solved_for_is_what_was_asked() {
     let [value, sigma] = solved(&found, 0, "cx");
     assert!(value.abs() < 6.0 * sigma && sigma < 3.0, "{value} +- {sigma}");
     std::fs::write(folder.path().join("d.csv"), "target_a,target_b,distance,sigma\n1,2,2500,0.5\n").unwrap();
-    let (_, scaled, _) = answer(folder.path(), &[".", "--sigma", "0.4", "--distances", "d.csv", "--length", "1,2"]);
+    let (_, scaled, _) = answer(folder.path(), &["sparse", "--sigma", "0.4", "--distances", "d.csv", "--length", "1,2"]);
     assert!(
         (number(&scaled["lengths"][0]["length"]) - 2500.0).abs() < 0.01 && scaled["counts"]["constraints"] == 6,
         "{}",
@@ -92,20 +93,20 @@ fn mistakes_are_said() {
         assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
         stderr(&output)
     };
-    let error = refused(&[".", "--solve", "f,kk1"]);
+    let error = refused(&["sparse", "--solve", "f,kk1"]);
     assert!(error.contains("camera 1 has no parameter `kk1`"), "{error}");
     let error = refused(&["nowhere"]);
     assert!(error.contains("nowhere"), "{error}");
-    let error = refused(&[".", "--points", "p.csv"]);
+    let error = refused(&["sparse", "--points", "p.csv"]);
     assert!(error.contains("--points"), "{error}");
-    let error = refused(&[".", "--adjusted", "."]);
+    let error = refused(&["sparse", "--adjusted", "sparse"]);
     assert!(error.contains("--adjusted"), "{error}");
-    let images = folder.path().join("images.txt");
+    let images = folder.path().join("sparse/images.txt");
     let text = std::fs::read_to_string(&images).unwrap();
     let line = text.lines().nth(4).unwrap();
     let first: Vec<&str> = line.split(' ').take(3).collect();
     std::fs::write(&images, text.replacen(line, &format!("{line} {}", first.join(" ")), 1)).unwrap();
-    let error = refused(&["."]);
+    let error = refused(&["sparse"]);
     assert!(error.contains(&format!("image photo01.jpg shows point {} twice", first[2])), "{error}");
 }
 

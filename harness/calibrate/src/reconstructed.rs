@@ -9,7 +9,7 @@ use calibench_diagnostics::nearest;
 use calibench_model::camera::{Camera, CameraModel, NoCounterpart, Ray};
 use calibench_model::observation::Start;
 use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoint, TieSight};
-use calibench_model::{ControlRow, LostRows, NamedCamera, Points, Pose, Reconstruction, upper_median};
+use calibench_model::{ControlRow, LostRows, MeasuredDistance, NamedCamera, Points, Pose, Reconstruction, upper_median};
 use glob::Pattern;
 use nalgebra::{Point3, Vector3};
 
@@ -75,6 +75,7 @@ pub fn prepare_reconstruction(
     settings: &Settings,
 ) -> Result<Reconstructed, CalibrationError> {
     names_are_unique(reconstruction)?;
+    let reconstruction = &scaled(reconstruction, settings);
     let begins: Vec<Begin> = reconstruction.sights.iter().map(|sight| begin(reconstruction, sight)).collect();
     let counts = |begin: Begin| begin == Begin::Before || (begin == Begin::Behind && behind == Behind::Count);
     let images = images_in_use(reconstruction, &begins.iter().map(|begin| counts(*begin)).collect::<Vec<_>>());
@@ -184,6 +185,22 @@ impl Calibration<'_> {
         }
         (adjusted, lengths.into_iter().map(|(sum, count)| sum / f64::from(count)).collect())
     }
+}
+
+/// The reconstruction in the units of the distances: by the median ratio of these to its own, where there are any.
+fn scaled(reconstruction: &Reconstruction, settings: &Settings) -> Reconstruction {
+    let mut scaled = reconstruction.clone();
+    let at: HashMap<&str, Point3<f64>> = reconstruction.points.iter().map(|point| (point.name.as_str(), point.position)).collect();
+    let ratio = |distance: &MeasuredDistance| {
+        let [from, to] = distance.targets.each_ref().map(|name| at.get(name.as_str()));
+        Some(distance.value / (to? - from?).norm())
+    };
+    let ratios = settings.distances.iter().filter_map(ratio).filter(|ratio| ratio.is_finite() && *ratio > 0.0);
+    if let Some(scale) = upper_median(ratios) {
+        scaled.images.iter_mut().for_each(|image| image.pose.centre *= scale);
+        scaled.points.iter_mut().for_each(|point| point.position *= scale);
+    }
+    scaled
 }
 
 /// Inner constraints over the points that images hold well, so that none of those that lie far off holds the frame.

@@ -20,9 +20,9 @@ use rayon::prelude::*;
 
 use crate::arrays::{NOWHERE, of_matrix, of_positions, positions, rows, table};
 use crate::error::{camera as refused, doubt, input, lost};
+use crate::image_size::size_of;
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
-use crate::image_size::size_of;
 use crate::reframing::reframing;
 
 /// A camera: see `calibench.Camera`.

@@ -2,7 +2,6 @@
 
 #![allow(clippy::needless_pass_by_value, reason = "Python hands values over")]
 
-mod accepting;
 mod arrays;
 mod boards;
 mod calibrating;
@@ -12,12 +11,12 @@ mod detecting;
 mod difference;
 mod error;
 mod grey;
+mod image_size;
 mod judging;
 mod league;
 mod listing;
 mod measuring;
 mod method;
-mod image_size;
 mod pickled;
 mod points;
 mod pool;
@@ -38,8 +37,6 @@ mod _calibench {
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python calls it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
-    #[pymodule_export]
-    use super::accepting::{accept_lengths, accept_points};
     #[pymodule_export]
     use super::boards::board;
     #[pymodule_export]

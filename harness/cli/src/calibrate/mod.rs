@@ -41,7 +41,7 @@ pub struct Calibrate {
     /// Photographs of a board, or a folder of them, in place of --points and --control
     #[arg(value_name = "PHOTO", requires = "board")]
     photos: Vec<PathBuf>,
-    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP, requires = "photos")]
+    #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP, requires = "photos")]
     board: Option<Board>,
     /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own
     #[arg(long, requires = "photos")]

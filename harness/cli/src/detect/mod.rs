@@ -37,7 +37,7 @@ pub struct Detect {
     /// Photographs, or a folder of them: PNG, JPEG, TIFF, PNM, BMP or WebP
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
-    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_or_unknown, help = HELP_OR_UNKNOWN,
+    #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_or_unknown, help = HELP_OR_UNKNOWN,
           required_unless_present = "testfield", conflicts_with = "testfield")]
     board: Option<Asked>,
     /// Each of several such boards in a photograph, from the left: its points stand under the view PHOTO#1, PHOTO#2, ..., which `measure` and `calibrate` take as an image with a pose of its own

@@ -46,7 +46,7 @@ pub struct Judge {
     /// Size of the images that --points are of, px
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "points", conflicts_with = "photos")]
     size: Option<ImageSize>,
-    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP,
+    #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP,
           required_unless_present = "control", conflicts_with = "control")]
     board: Option<Board>,
     /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own

@@ -36,7 +36,7 @@ pub struct Measure {
     /// Approximate positions: CSV with image,target,x,y, and optionally sxx,sxy,syy and kind,axx,axy,ayx,ayy
     #[arg(long, value_name = "CSV", required_unless_present = "board", conflicts_with = "board")]
     points: Option<PathBuf>,
-    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_to_find, help = HELP)]
+    #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_to_find, help = HELP)]
     board: Option<Board>,
     /// The method, as in forstner:window=15; several are measured one after the other. Kinds of targets before it limit it to these, as in disc+square=centroid [default: forstner; of a board as for `calibrate`]
     #[arg(short, long = "method", value_name = "METHOD")]

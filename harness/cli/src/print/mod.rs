@@ -28,7 +28,7 @@ pub struct Print {
     /// Name of a scenario, or a TOML file
     #[arg(conflicts_with = "board")]
     scenario: Option<String>,
-    #[arg(long, alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP)]
+    #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP)]
     board: Option<Board>,
     /// What the lengths of --board are in
     #[arg(long, value_enum, default_value_t, requires = "board")]
