@@ -10,7 +10,7 @@ use calibench_cameras::target::{Given, goal};
 use calibench_cameras::{CameraFormat, ReadOptions, format_named, read_camera_with, write_camera};
 use calibench_files::OutputFile;
 use calibench_images::st_map::{Overscan, Undistorted};
-use calibench_model::camera::{CameraModel, ImageSize, Ray, Verification, fold};
+use calibench_model::camera::{CameraModel, Ray, Verification, fold};
 use calibench_model::convert::{ConvertOptions, Method, Region, Verdict};
 use calibench_model::{NamedCamera, PixelPoint};
 use numpy::PyArray2;
