@@ -159,22 +159,22 @@ fn what_is_too_little_is_left_out_by_name() {
 /// Rays that part as they go have no point, however far off: the adjustment would chase it for ever.
 #[test]
 fn a_point_that_runs_away_is_left_out_by_name() {
-    let (mut reconstruction, _) = ring(0.3);
+    let (mut reconstruction, truth) = ring(0.3);
     let index = reconstruction.points.len();
     let ahead = Vector3::new(-1.0, 0.1, -0.2).normalize();
     reconstruction.points.push(TiePoint { name: "sun".into(), position: Point3::from(80.0 * ahead) });
-    for image in [8, 9, 0, 1, 2] {
+    for image in [9, 0, 1] {
         let pose = reconstruction.images[image].pose;
-        let parting = ahead + 4e-4 * (pose.centre.coords - Vector3::new(6.0, 0.0, 3.0));
+        let parting = ahead + 2e-3 * (pose.centre.coords - Vector3::new(7.0, 0.0, 3.0));
         let ray = pose.ray(&(pose.centre + parting));
-        let position = reconstruction.cameras[image].named.camera.project(ray).unwrap();
+        let position = truth[image].project(ray).unwrap();
         reconstruction.sights.push(TieSight { image, point: index, position });
     }
     let found = prepared(&reconstruction, Behind::Count);
     assert!(found.behind.is_empty() && found.prepared.left_out.is_empty());
     calibrate(&found.prepared, &[], |calibration| {
         assert_eq!(calibration.prepared.far, ["sun"]);
-        assert_eq!((calibration.prepared.left_out.len(), calibration.solution.points().len()), (5, index));
+        assert_eq!((calibration.prepared.left_out.len(), calibration.solution.points().len()), (3, index));
         assert!(calibration.prepared.left_out.iter().all(|left_out| left_out.why.contains("very far away")));
         let sigma0 = calibration.solution.sigma0().unwrap();
         assert!((0.3..0.7).contains(&sigma0), "{sigma0}");

@@ -181,7 +181,7 @@ fn what_a_model_does_not_hold_is_refused_by_name() {
             _ => None,
         })
         .collect();
-    assert_eq!(one_scale, ["photogrammetric", "ebner", "pix4d", "pix4d", "micmac"]);
+    assert_eq!(one_scale, ["photogrammetric", "ebner", "pix4d", "pix4d", "ptlens", "micmac"]);
     let with = |name: &str, value: f64, camera: &Camera| {
         let values: Vec<f64> = camera.parameters().iter().map(|p| if p.name == name { value } else { p.value }).collect();
         camera.with_parameters(&values)
