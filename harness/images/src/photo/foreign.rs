@@ -31,7 +31,7 @@ pub enum Foreign {
 }
 
 impl Foreign {
-    /// What a file is, by its first [`TELLING`] bytes; `None` where they are of no such format.
+    /// What a file is, by its first bytes; `None` where they are of no such format.
     pub fn of(head: &[u8]) -> Option<Self> {
         let at = |place: usize, bytes: &[u8]| head.get(place..).is_some_and(|rest| rest.starts_with(bytes));
         if at(4, b"ftyp") {
