@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::project::{copy, root, run, stderr, stdout};
+use crate::project::{copy, data, root, run, stderr, stdout};
 
 /// OpenCV's YAML of a camera with barrel distortion and decentring coefficients that differ.
 pub const CAMERA: &str = "%YAML:1.0\n---\nimage_width: 1600\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
@@ -224,7 +224,7 @@ fn every_mistake_has_its_price() {
 #[test]
 #[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: docs/scenarios.md says where they are looked for")]
 fn the_open_points_of_old_photoscan_are_decided_by_flags() {
-    let file = data().join("photoscan-old-cameras.xml");
+    let file = cameras().join("photoscan-old-cameras.xml");
     let file = file.to_str().unwrap();
     let value = |arguments: &[&str], name: &str| -> f64 {
         let text = good(&root(), &[&["camera", file], arguments].concat());
@@ -236,14 +236,14 @@ fn the_open_points_of_old_photoscan_are_decided_by_flags() {
     assert!(good(&root(), &["camera", file]).contains("--order and --origin decide"));
 }
 
-fn data() -> PathBuf {
-    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from).join("cameras")
+fn cameras() -> PathBuf {
+    data().join("cameras")
 }
 
 #[test]
 #[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: docs/scenarios.md says where they are looked for")]
 fn two_exports_of_one_adjustment_are_one_camera() {
-    let file = |name: &str| data().join(name).to_str().unwrap().to_owned();
+    let file = |name: &str| cameras().join(name).to_str().unwrap().to_owned();
     let text = good(&root(), &["diff", &file("metashape-24mm.xml"), &file("opencv-24mm.xml")]);
     let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
     assert!(rms < 1e-9 && text.contains("after a rotation of 0.000000"), "{text}");

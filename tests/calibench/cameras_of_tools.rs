@@ -1,7 +1,7 @@
 //! Cameras from tool to tool, as a user converts them.
 
 use crate::cameras::{CAMERA, folder, good};
-use crate::project::{root, run, stderr, stdout};
+use crate::project::{data, root, run, stderr, stdout};
 
 /// Two cameras of a rig, 11 cm apart.
 const RIG: &str = "cam0:\n  camera_model: ds\n  intrinsics: [-0.24, 0.57, 350.0, 349.0, 366.0, 249.0]\n  distortion_model: none\n  distortion_coeffs: []\n  \
@@ -131,7 +131,7 @@ fn the_docs_name_every_format_of_a_tool() {
 }
 
 fn reports() -> std::path::PathBuf {
-    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into).join("reports")
+    data().join("reports")
 }
 
 /// Corners of a lens of 195 degrees: whatever the model, what was adjusted is shown, and written where it is asked for or beside.

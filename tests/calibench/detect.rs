@@ -5,7 +5,7 @@ use std::path::Path;
 
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
 
-use crate::project::{files, root, run, stderr, stdout};
+use crate::project::{data, files, root, run, stderr, stdout};
 
 const FIELD: &str = "testfields/coded";
 
@@ -199,7 +199,7 @@ fn other_testfields_and_options_are_refused() {
 fn photographs_of_a_chessboard_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let project = root().display().to_string();
-    let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into).join("opencv-left");
+    let data = data().join("opencv-left");
     let photos: Vec<_> = files(&data).into_iter().map(|(name, _)| data.join(name)).collect();
     let photos = photos.iter().filter(|path| path.extension().is_some_and(|extension| extension == "jpg"));
     let photos: Vec<&str> = photos.map(|path| path.to_str().unwrap()).collect();

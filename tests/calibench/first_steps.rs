@@ -200,6 +200,10 @@ fn a_demonstration_needs_nothing() {
         assert!(page.contains(part), "{part}");
     }
     assert_eq!(files(&demo.join("photographs")).iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "png")).count(), 13);
+    // What it said of itself is what `calibrate` says, not what a file without correlations would have.
+    let calibrated = run(&demo, &["calibrate", "-q", "photographs", "--board", "9x6:25"]);
+    let known = stdout(&calibrated).lines().find_map(|line| line.strip_prefix("known to ")?.split(' ').next().map(str::to_owned)).unwrap();
+    assert!(page.contains(&format!("it said of itself {known} px")), "{known}");
     // What is on the page came out of the photographs: another camera is not as near.
     assert!(page.contains("class=\"verdict good\""), "what the camera says of itself holds");
     good(here, &["demo", "-q"]);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::project::{root, run, stderr, stdout};
+use crate::project::{data, number, root, run, stderr, stdout};
 
 /// Points keep to the middle of the frame: k3 is not determined.
 const NETWORK: [&str; 11] =
@@ -23,10 +23,6 @@ fn answer(folder: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
     let output = run(folder, arguments);
     let found = serde_json::from_str(&stdout(&output)).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
     (output.status.code(), found)
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 fn parameter(found: &Value, name: &str) -> f64 {
@@ -145,8 +141,7 @@ fn what_does_not_go_is_said() {
 #[test]
 #[cfg_attr(not(rigs), ignore = "the networks in `rigs` are absent: docs/scenarios.md says where they are looked for")]
 fn a_network_of_others_is_as_another_program_adjusts_it() {
-    let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into);
-    let folder = data.join("rigs/freenet-aicon");
+    let folder = data().join("rigs/freenet-aicon");
     let arguments =
         ["calibrate", "--points", "points.csv", "--size", "8688x5792", "--model", "opencv5", "--sigma", "0.1", "--plain", "--json"];
     let more = ["--distances", "distances.csv", "--length", "6,8", "--length", "14,12", "--length", "133,117"];

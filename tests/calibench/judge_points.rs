@@ -1,9 +1,9 @@
 //! `judge --points`: files of corners in the place of photographs.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Output;
 
-use crate::project::{files, root, run, stderr, stdout};
+use crate::project::{data, files, root, run, stderr, stdout};
 
 const METHODS: [&str; 2] = ["forstner:window=11,significance=4", "chess_corners"];
 const MODELS: [&str; 6] = ["--model", "opencv4:fx,fy,cx,cy,k1", "--model", "opencv4", "--splits", "2"];
@@ -90,7 +90,7 @@ fn files_are_judged_exactly_as_the_photographs_they_were_measured_in() {
 )]
 fn files_measured_in_real_photographs_are_judged_as_these() {
     let folder = tempfile::tempdir().unwrap();
-    let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from).join("opencv-left");
+    let data = data().join("opencv-left");
     let photos: Vec<String> = files(&data)
         .into_iter()
         .map(|(name, _)| data.join(name).display().to_string())

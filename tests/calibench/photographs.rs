@@ -1,10 +1,6 @@
 //! Real photographs: OpenCV's samples, where they are.
 
-use crate::project::{copy, root, run, stderr, stdout, table};
-
-fn data() -> std::path::PathBuf {
-    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into)
-}
+use crate::project::{copy, data, run, stderr, stdout, table};
 
 #[test]
 #[cfg_attr(

@@ -139,12 +139,21 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
+/// What others made, that stays out of the repository: `CALIBENCH_DATA`, or `shared/data` beside the checkout.
+pub fn data() -> PathBuf {
+    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from)
+}
+
+/// A number of an answer.
+pub fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
 /// The program, to be run in `folder`. Photographs are found as the tests find them.
 pub fn program(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_calibench-under-test"));
     command.current_dir(folder).env_remove("CALIBENCH_ROOT");
-    let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from);
-    command.env("CALIBENCH_DATA", data);
+    command.env("CALIBENCH_DATA", data());
     // One store for all tests and for the gate: of scenarios that several copy each is computed once.
     command.env("CALIBENCH_STORE", root().join("target/store"));
     command

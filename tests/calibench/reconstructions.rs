@@ -5,7 +5,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::project::{root, run, stderr, stdout};
+use crate::project::{data, number, root, run, stderr, stdout};
 
 fn example() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -20,10 +20,6 @@ fn answer(folder: &Path, arguments: &[&str]) -> (Option<i32>, Value, String) {
     let output = run(folder, &[&["calibrate", "--json", "--reconstruction"], arguments].concat());
     let found = serde_json::from_str(&stdout(&output)).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
     (output.status.code(), found, stderr(&output))
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 fn cost(found: &Value) -> f64 {
@@ -111,7 +107,7 @@ fn mistakes_are_said() {
 }
 
 fn rigs() -> PathBuf {
-    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into).join("rigs")
+    data().join("rigs")
 }
 
 fn reference(folder: &Path) -> Value {

@@ -1,6 +1,7 @@
 //! Distances that were measured, and lengths that are asked for.
 
-use calibench_model::MeasuredDistance;
+use calibench_model::{MeasuredDistance, upper_median};
+use nalgebra::Point3;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::{Calibration, CalibrationError, Doubt, Subject};
@@ -32,6 +33,15 @@ pub struct CheckedDistance {
     pub redundancy: Option<f64>,
     /// Normalised residual, a number; `None` likewise.
     pub w: Option<f64>,
+}
+
+/// The median ratio of measured distances to those between the points that `place` has; `None` where there is none.
+pub(crate) fn scale_by(distances: &[MeasuredDistance], place: impl Fn(&str) -> Option<Point3<f64>>) -> Option<f64> {
+    let ratio = |distance: &MeasuredDistance| {
+        let [from, to] = distance.targets.each_ref().map(|name| place(name));
+        Some(distance.value / (to? - from?).norm())
+    };
+    upper_median(distances.iter().filter_map(ratio).filter(|ratio| ratio.is_finite()))
 }
 
 impl Calibration<'_> {

@@ -1,5 +1,6 @@
 //! Reconstructions of other tools, adjusted anew: their cameras, orientations and points are start values of a free network.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -9,10 +10,11 @@ use calibench_diagnostics::nearest;
 use calibench_model::camera::{Camera, CameraModel, NoCounterpart, Ray};
 use calibench_model::observation::Start;
 use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoint, TieSight};
-use calibench_model::{ControlRow, LostRows, MeasuredDistance, NamedCamera, Points, Pose, Reconstruction, upper_median};
+use calibench_model::{ControlRow, LostRows, NamedCamera, Points, Pose, Reconstruction, upper_median};
 use glob::Pattern;
 use nalgebra::{Point3, Vector3};
 
+use crate::distances::scale_by;
 use crate::start::Starts;
 use crate::{Calibration, CalibrationError, DatumChoice, LeftOut, Optics, Prepared, Settings, Shape, Survey, few, network};
 
@@ -187,20 +189,17 @@ impl Calibration<'_> {
     }
 }
 
-/// The reconstruction in the units of the distances: by the median ratio of these to its own, where there are any.
-fn scaled(reconstruction: &Reconstruction, settings: &Settings) -> Reconstruction {
-    let mut scaled = reconstruction.clone();
-    let at: HashMap<&str, Point3<f64>> = reconstruction.points.iter().map(|point| (point.name.as_str(), point.position)).collect();
-    let ratio = |distance: &MeasuredDistance| {
-        let [from, to] = distance.targets.each_ref().map(|name| at.get(name.as_str()));
-        Some(distance.value / (to? - from?).norm())
+/// The reconstruction in the units of the distances, where there are any.
+fn scaled<'r>(reconstruction: &'r Reconstruction, settings: &Settings) -> Cow<'r, Reconstruction> {
+    let at: HashMap<&str, Point3<f64>> = match settings.distances[..] {
+        [] => HashMap::new(),
+        _ => reconstruction.points.iter().map(|point| (point.name.as_str(), point.position)).collect(),
     };
-    let ratios = settings.distances.iter().filter_map(ratio).filter(|ratio| ratio.is_finite() && *ratio > 0.0);
-    if let Some(scale) = upper_median(ratios) {
-        scaled.images.iter_mut().for_each(|image| image.pose.centre *= scale);
-        scaled.points.iter_mut().for_each(|point| point.position *= scale);
-    }
-    scaled
+    let Some(scale) = scale_by(&settings.distances, |name| at.get(name).copied()) else { return Cow::Borrowed(reconstruction) };
+    let mut scaled = reconstruction.clone();
+    scaled.images.iter_mut().for_each(|image| image.pose.centre *= scale);
+    scaled.points.iter_mut().for_each(|point| point.position *= scale);
+    Cow::Owned(scaled)
 }
 
 /// Inner constraints over the points that images hold well, so that none of those that lie far off holds the frame.

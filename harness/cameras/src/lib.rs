@@ -43,6 +43,7 @@ pub mod target;
 mod toml_tree;
 mod tree;
 mod unknown;
+mod words;
 mod xml;
 
 use std::path::Path;

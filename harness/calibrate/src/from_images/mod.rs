@@ -6,10 +6,11 @@ mod pairs;
 
 use calibench_adjust::approximate::Shape;
 use calibench_model::camera::{Camera, OpenCvFisheye};
-use calibench_model::{ControlRow, Points, upper_median};
+use calibench_model::{ControlRow, Points};
 use nalgebra::Point3;
 use rayon::prelude::*;
 
+use crate::distances::scale_by;
 use crate::start::{middle, pinhole};
 use crate::{CalibrationError, DatumChoice, Optics, Prepared, Settings, Survey, model, optics, prepare};
 use chain::Chain;
@@ -86,22 +87,12 @@ fn coordinates(survey: &Survey, settings: &Settings) -> Result<Vec<ControlRow>, 
         return Err(CalibrationError::NoModel { why });
     }
     let points = best.into_points();
-    let scale = scale(survey, settings, &points);
+    let scale = scale_by(&settings.distances, |name| survey.target_called(name).and_then(|target| points[target])).unwrap_or(1.0);
     let middle = Shape::of(points.iter().flatten().copied()).centroid;
     let row = |(target, point): (usize, &Option<Point3<f64>>)| {
         point.map(|point| ControlRow::new(survey.target(target), ((point - middle) * scale).into()))
     };
     Ok(points.iter().enumerate().filter_map(row).collect())
-}
-
-/// The median ratio of measured distances to those of the model; 1 where there is none.
-fn scale(survey: &Survey, settings: &Settings, points: &[Option<Point3<f64>>]) -> f64 {
-    let ratio = |distance: &calibench_model::MeasuredDistance| {
-        let [from, to] = distance.targets.each_ref().map(|name| survey.target_called(name).and_then(|target| points[target]));
-        Some(distance.value / (to? - from?).norm())
-    };
-    let ratios: Vec<f64> = settings.distances.iter().filter_map(ratio).filter(|ratio| ratio.is_finite()).collect();
-    upper_median(ratios).unwrap_or(1.0)
 }
 
 /// Sets of cameras that are tried.

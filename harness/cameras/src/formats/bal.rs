@@ -6,11 +6,12 @@ use calibench_model::convert::Target;
 use calibench_model::named_camera::Pose;
 
 use super::PLAIN;
-use super::bundler::{Stream, camera, parts};
+use super::bundler::{camera, parts};
 use crate::format::{Keeps, KeptPose, Model};
 use crate::number::shortest;
 use crate::pose::{of_rotation_vector, of_rt, rotation_vector};
 use crate::source::Source;
+use crate::words::Words;
 use crate::{CameraFileError, CameraFormat, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -39,21 +40,15 @@ fn recognise(source: &Source<'_>) -> Result<(), String> {
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let size = options.size_or(None)?;
-    let mut stream = Stream { lines: source.lines(), left: Vec::new() };
-    let count = stream.number("the number of cameras")? as usize;
-    stream.number("the number of points")?;
-    for _ in 0..stream.number("the number of observations")? as usize {
-        for _ in 0..4 {
-            stream.number("the observations' end")?;
-        }
+    let mut words = Words::new(source.text);
+    let count = words.whole("the number of cameras")?;
+    words.whole("the number of points")?;
+    for _ in 0..words.whole("the number of observations")? {
+        words.numbers::<4>("the observations' end")?;
     }
     let mut cameras = Vec::new();
     for index in 0..count {
-        let mut v = [0.0; 9];
-        for slot in &mut v {
-            *slot = stream.number(&format!("the nine numbers of camera {index}"))?;
-        }
-        let [a, b, c, x, y, z, f, k1, k2] = v;
+        let [a, b, c, x, y, z, f, k1, k2] = words.numbers(&format!("the nine numbers of camera {index}"))?;
         let camera = camera([f, k1, k2], size).map_err(|error| error.of(format!("camera {index}")))?;
         let pose = of_rt(of_rotation_vector([a, b, c]), [x, y, z])?.with_y_and_z_reversed();
         cameras.push(NamedCamera { pose: Some(pose), ..NamedCamera::new(index.to_string(), camera) });

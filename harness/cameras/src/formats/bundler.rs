@@ -8,7 +8,7 @@ use calibench_model::named_camera::Pose;
 use super::PLAIN;
 use crate::brown::{Brown, middle};
 use crate::format::{Keeps, KeptPose, Model};
-use crate::number::{finite, numbers, shortest};
+use crate::number::{numbers, shortest};
 use crate::pose::of_rt;
 use crate::source::Source;
 use crate::{CameraFileError, CameraFormat, ReadOptions, noted};
@@ -90,25 +90,4 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
         line(pose.t());
     }
     Ok(out)
-}
-
-/// Numbers that stand one a line or several.
-pub(super) struct Stream<'a, I: Iterator<Item = (usize, &'a str)>> {
-    pub lines: I,
-    pub left: Vec<(usize, &'a str)>,
-}
-
-impl<'a, I: Iterator<Item = (usize, &'a str)>> Stream<'a, I> {
-    /// The next number.
-    ///
-    /// # Errors
-    /// The text ends, or the next word is not a finite number; `what` is named.
-    pub fn number(&mut self, what: &str) -> Result<f64, CameraFileError> {
-        while self.left.is_empty() {
-            let (line, text) = self.lines.next().ok_or_else(|| CameraFileError::new(format!("ends before {what}")))?;
-            self.left = text.split_whitespace().rev().map(|word| (line, word)).collect();
-        }
-        let (line, word) = self.left.pop().unwrap_or((0, ""));
-        finite(word).map_err(|error| error.on_line(line).of(what))
-    }
 }

@@ -6,11 +6,11 @@ use calibench_model::reconstruction::{OrientedImage, TiePoint, TieSight};
 use nalgebra::Point3;
 
 use super::lens::{frame_around, from_the_middle, one_focal};
-use super::words::Words;
 use super::{oriented, within};
 use crate::CameraFileError;
 use crate::brown::{middle, positive};
 use crate::pose::{of_rotation_vector, of_rt};
+use crate::words::Words;
 
 /// Three counts on the first line, two indices and two coordinates on the second.
 pub(super) fn recognise(text: &str) -> bool {

@@ -8,11 +8,11 @@ use nalgebra::Point3;
 
 use super::bal::largest;
 use super::lens::{frame_around, from_the_middle, one_focal};
-use super::words::Words;
 use super::{oriented, within};
 use crate::CameraFileError;
 use crate::brown::{middle, positive};
 use crate::pose::of_rt;
+use crate::words::Words;
 
 const HEADER: &str = "# Bundle file";
 

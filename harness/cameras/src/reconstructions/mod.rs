@@ -6,7 +6,6 @@ mod colmap;
 mod colmap_written;
 mod lens;
 mod openmvg;
-mod words;
 
 use std::path::Path;
 

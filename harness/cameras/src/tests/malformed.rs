@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use calibench_model::camera::{Camera, ImageSize};
+use calibench_model::camera::Camera;
 
 use super::super::{LARGEST_FILE, ReadOptions, parse_camera, read_camera, write_camera};
-use super::{read, read_with};
+use super::{of_size, read, read_with};
 
 const YAML: &str = "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
     data: [ 500., 0., 320., 0., 501., 240., 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 5\n   cols: 1\n   dt: d\n   \
@@ -31,22 +31,11 @@ const OURS: &str = "format = \"calibench-camera\"\nversion = 1\nmodel = \"photog
     [interior_orientation]\nc_mm = 20.0\nx0_mm = 0.1\ny0_mm = 0.2\n";
 const ALL: [&str; 9] = [YAML, OPENCV, METASHAPE, OLD, DOCUMENT, CAM, INPHO, PARAMETERS, OURS];
 
-const SIZE: ReadOptions = ReadOptions {
-    size: Some(ImageSize { width: 640, height: 480 }),
-    fisheye: None,
-    lens: None,
-    from: None,
-    ignore: Vec::new(),
-    other_size: false,
-    matrix: None,
-    distortion: None,
-};
-
 #[test]
 fn the_samples_are_read() {
     for text in ALL {
-        read_with(text, SIZE).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        assert!(read_with(&text.replace('\n', "\r\n"), SIZE).is_ok() && read_with(&format!("\u{feff}{text}"), SIZE).is_ok());
+        read_with(text, of_size()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert!(read_with(&text.replace('\n', "\r\n"), of_size()).is_ok() && read_with(&format!("\u{feff}{text}"), of_size()).is_ok());
     }
     assert!(read(CAM).unwrap_err().contains("does not state the size of the images; give it"));
 }
@@ -106,7 +95,7 @@ const MISTAKES: [(&str, &str, &str, &str); 46] = [
 fn a_mistake_is_named_with_its_place() {
     for (sample, part, instead, expected) in MISTAKES {
         assert!(sample.contains(part), "{part}");
-        let error = read_with(&sample.replacen(part, instead, 1), SIZE).unwrap_err();
+        let error = read_with(&sample.replacen(part, instead, 1), of_size()).unwrap_err();
         assert!(error.contains(expected), "`{part}` -> `{instead}`: {error}");
     }
     for (part, instead) in [
@@ -143,11 +132,11 @@ fn numbers_of_single_precision_are_what_opencv_would_hold() {
 fn cut_anywhere_or_changed_anywhere_nothing_panics() {
     for text in ALL {
         for end in 0..text.len() {
-            let _ = read_with(&text[..end], SIZE);
+            let _ = read_with(&text[..end], of_size());
             let mut bytes = text.as_bytes().to_vec();
             for byte in [0, b'<', b'-', b'\n', b'9', 0xff] {
                 bytes[end] = byte;
-                let _ = parse_camera("f", &bytes, &SIZE);
+                let _ = parse_camera("f", &bytes, &of_size());
             }
         }
     }

@@ -27,6 +27,11 @@ use calibench_model::camera::{Camera, CameraModel, ImageSize};
 
 use super::{CameraFile, NamedCamera, ReadOptions, parse_camera};
 
+/// For files that do not state a size.
+fn of_size() -> ReadOptions {
+    ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), ..ReadOptions::default() }
+}
+
 /// A text, read.
 fn read(text: &str) -> Result<CameraFile, String> {
     read_with(text, ReadOptions::default())

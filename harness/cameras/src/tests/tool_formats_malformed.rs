@@ -3,18 +3,7 @@
 use calibench_model::camera::ImageSize;
 
 use super::super::{ReadOptions, parse_camera};
-use super::read_with;
-
-const SIZE: ReadOptions = ReadOptions {
-    size: Some(ImageSize { width: 640, height: 480 }),
-    fisheye: None,
-    lens: None,
-    from: None,
-    ignore: Vec::new(),
-    other_size: false,
-    matrix: None,
-    distortion: None,
-};
+use super::{of_size, read_with};
 
 const COLMAP: &str = "# Camera list\n1 OPENCV 640 480 500 501 320 240 -0.1 0.02 1e-3 2e-3\n2 PINHOLE 640 480 500 501 320 240\n";
 const KAPTURE: &str = "# kapture format: 1.1\ngps, , gnss, EPSG:4326\ncam, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\n";
@@ -81,20 +70,11 @@ const ALL: [(&str, &str); 18] = [
 fn the_samples_are_read_as_what_they_are() {
     for (format, text) in ALL {
         for text in [text.to_owned(), text.replace('\n', "\r\n"), format!("\u{feff}{text}")] {
-            let file = read_with(&text, SIZE).unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let file = read_with(&text, of_size()).unwrap_or_else(|error| panic!("{error}\n{text}"));
             assert_eq!(file.format.name, format, "{text}");
         }
         // A size that contradicts the file is refused, one that the file leaves open is asked for.
-        let other = ReadOptions {
-            size: Some(ImageSize { width: 641, height: 480 }),
-            fisheye: None,
-            lens: None,
-            from: None,
-            ignore: Vec::new(),
-            other_size: false,
-            matrix: None,
-            distortion: None,
-        };
+        let other = ReadOptions { size: Some(ImageSize { width: 641, height: 480 }), ..ReadOptions::default() };
         let states_size = super::super::format_named(format).unwrap().states_size;
         assert_eq!(read_with(text, other).is_err(), states_size, "{format}");
         assert_eq!(read_with(text, ReadOptions::default()).is_ok(), states_size, "{format}");
@@ -104,7 +84,7 @@ fn the_samples_are_read_as_what_they_are() {
 #[test]
 fn a_division_model_without_coefficients_is_a_pinhole() {
     let zeros = XMP.replace("-0.1 0.02 0 0 0.001 0.002", "0 0 0 0 0 0");
-    let read = |text: &str| read_with(text, SIZE).unwrap().cameras[0].camera;
+    let read = |text: &str| read_with(text, of_size()).unwrap().cameras[0].camera;
     assert_eq!(read(&zeros.replace("brown3t2", "division")), read(&zeros.replace("brown3t2", "perspective")));
 }
 
@@ -113,12 +93,12 @@ fn an_id_that_stands_twice_is_refused() {
     let colmap = "1 PINHOLE 640 480 500 501 320 240\n01 PINHOLE 640 480 900 901 320 240\n";
     let kapture = "cam0, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\ncam0, right, camera, RADIAL, 640, 480, 900, 320, 240, -0.1, 0.02\n";
     for (text, id) in [(colmap, "01"), (kapture, "cam0")] {
-        let error = read_with(text, SIZE).unwrap_err();
+        let error = read_with(text, of_size()).unwrap_err();
         assert!(error.contains(&format!("f:2, `{id}`: the id of two cameras, first on line 1")), "{error}");
     }
     let two = OPENMVG.replacen("\"intrinsics\": [", "\"intrinsics\": [ENTRY, ", 1);
     let (entry, _) = OPENMVG.split_once("\"intrinsics\": [").and_then(|(_, rest)| rest.rsplit_once(']')).unwrap();
-    let error = read_with(&two.replacen("ENTRY", entry, 1), SIZE).unwrap_err();
+    let error = read_with(&two.replacen("ENTRY", entry, 1), of_size()).unwrap_err();
     assert!(error.contains("the id of two cameras"), "{error}");
     let camera = "<camera id=\"3\" label=\"LABEL\"><calibration><projection>frame</projection><width>640</width><height>480</height><fx>500</fx><fy>501</fy>\
         <cx>320</cx><cy>240</cy></calibration></camera>\n";
@@ -126,7 +106,7 @@ fn an_id_that_stands_twice_is_refused() {
     let error = read_with(&old, ReadOptions::default()).unwrap_err();
     assert!(error.contains("`3`: the id of two cameras, first on line 2"), "{error}");
     // A camera without a name has one in ROS.
-    let named = super::super::NamedCamera::new("", read_with(ROS, SIZE).unwrap().cameras[0].camera);
+    let named = super::super::NamedCamera::new("", read_with(ROS, of_size()).unwrap().cameras[0].camera);
     let text = super::super::camera_text(super::super::format_named("ros").unwrap(), &[named]).unwrap();
     assert!(text.contains("camera_name: \"camera\"\n"), "{text}");
 }
@@ -139,10 +119,10 @@ fn what_is_left_out_is_said() {
         (BENTLEY, "1 photos with their poses were left out"),
         (CALTECH, "the poses of the calibration images were left out"),
     ] {
-        let notes = &read_with(text, SIZE).unwrap().cameras[0].notes;
+        let notes = &read_with(text, of_size()).unwrap().cameras[0].notes;
         assert!(notes.iter().any(|note| note == expected), "{notes:?}");
     }
-    let covariance = read_with(CALTECH, SIZE).unwrap().cameras[0].covariance.clone().unwrap();
+    let covariance = read_with(CALTECH, of_size()).unwrap().cameras[0].covariance.clone().unwrap();
     // Three standard deviations are printed; what was not estimated is not named.
     assert_eq!((covariance.parameters.len(), covariance.values[0]), (8, 1.0));
 }
@@ -213,7 +193,7 @@ fn a_mistake_is_named_with_its_place() {
     let mut wrong = Vec::new();
     for (sample, part, instead, expected) in MISTAKES {
         assert!(sample.contains(part), "{part}");
-        match read_with(&sample.replacen(part, instead, 1), SIZE) {
+        match read_with(&sample.replacen(part, instead, 1), of_size()) {
             Err(error) if error.contains(expected) => {}
             Err(error) => wrong.push(format!("`{part}` -> `{instead}`: {error}")),
             Ok(_) => wrong.push(format!("`{part}` -> `{instead}` is read")),
@@ -226,11 +206,11 @@ fn a_mistake_is_named_with_its_place() {
 fn cut_anywhere_or_changed_anywhere_nothing_panics() {
     for (_, text) in ALL {
         for end in 0..text.len() {
-            let _ = read_with(&text[..end], SIZE);
+            let _ = read_with(&text[..end], of_size());
             let mut bytes = text.as_bytes().to_vec();
             for byte in [0, b'<', b'-', b'\n', b'9', b'}', b'"', 0xff] {
                 bytes[end] = byte;
-                let _ = parse_camera("f", &bytes, &SIZE);
+                let _ = parse_camera("f", &bytes, &of_size());
             }
         }
     }

@@ -43,7 +43,7 @@ pub fn field(board: Board, mm: f64, paper: (&Paper, &str)) -> Result<Testfield, 
 
 /// Blank paper around a board of this size, mm.
 fn margin(board: Board, mm: f64, size: [f64; 2], (paper, name): (&Paper, &str)) -> Result<f64, Failure> {
-    let usual = USUAL_MARGIN * step(&board) * mm;
+    let usual = USUAL_MARGIN * board.step() * mm;
     let Some(room) = paper.room() else { return Ok(usual) };
     let left = |room: [f64; 2]| (0.5 * (room[0] - size[0])).min(0.5 * (room[1] - size[1]));
     let most = room.map(left).into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -63,20 +63,6 @@ fn margin(board: Board, mm: f64, size: [f64; 2], (paper, name): (&Paper, &str)) 
         length(room[1][1]),
         (100.0 * scale).floor()
     )))
-}
-
-/// From a point to the next, object units, about.
-fn step(board: &Board) -> f64 {
-    match board {
-        Board::Chessboard(board) => board.square,
-        Board::Charuco(board) => board.square,
-        Board::AprilGrid(board) => board.tag,
-        Board::GridBoard(board) => board.marker,
-        Board::Circles(board) => board.spacing,
-        Board::Rings(board) => board.spacing,
-        Board::Puzzle(board) => board.square,
-        Board::Dotted(board) => board.square,
-    }
 }
 
 /// mm, to a tenth.

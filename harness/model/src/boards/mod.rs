@@ -71,6 +71,20 @@ impl Board {
         }
     }
 
+    /// The length by which it is named, object units: the side of a square or of a marker, or the distance of two circles' centres.
+    pub const fn step(&self) -> f64 {
+        match self {
+            Self::Chessboard(board) => board.square,
+            Self::Charuco(board) => board.square,
+            Self::AprilGrid(board) => board.tag,
+            Self::GridBoard(board) => board.marker,
+            Self::Circles(board) => board.spacing,
+            Self::Rings(board) => board.spacing,
+            Self::Puzzle(board) => board.square,
+            Self::Dotted(board) => board.square,
+        }
+    }
+
     /// Its kind, as in [`KINDS`].
     pub const fn kind(&self) -> &'static str {
         match self {

@@ -51,8 +51,9 @@ fn together_words(test: &LengthTest<'_>, found: &LengthAcceptance, together: &To
         with_unit(&plain(together.rms), unit),
     );
     if let Some((scale, sigma)) = together.scale {
-        let [scale, sigma] = [scale, sigma].map(|number| 1e6 * number);
-        text.push_str(&format!("scale          {} ppm too long, standard deviation {} ppm\n", plain(scale), plain(sigma)));
+        let how = if scale < 0.0 { "short" } else { "long" };
+        let [scale, sigma] = [scale.abs(), sigma].map(|number| 1e6 * number);
+        text.push_str(&format!("scale          {} ppm too {how}, standard deviation {} ppm\n", plain(scale), plain(sigma)));
     }
     text.push_str(&format!(
         "together       all errors are within their limits at a probability of {:.4}, if the reference's errors are independent\n",

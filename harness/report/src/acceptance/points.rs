@@ -4,6 +4,8 @@ use calibench_accept::basis::OF_POINTS;
 use calibench_accept::points::{AXES, Accuracy, PointResult};
 use calibench_accept::{Decision, PointAcceptance};
 
+use calibench_calibrate::few;
+
 use super::{basis_words, with_unit};
 use crate::markdown::{MarkdownTable, plain};
 
@@ -11,7 +13,7 @@ use crate::markdown::{MarkdownTable, plain};
 pub fn of_points(found: &PointAcceptance, unit: Option<&str>) -> String {
     let mut text = format!("{}\n", headline(found, unit));
     if !found.missing.is_empty() {
-        text.push_str(&format!("not measured: {}\n", found.missing.join(", ")));
+        text.push_str(&format!("not measured: {}\n", few(&found.missing)));
     }
     for remark in &found.remarks {
         text.push_str(&format!("note: {remark}\n"));

@@ -50,16 +50,7 @@ pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -
 fn in_a_word(wire: &BoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
     let board =
         wire.board.get_ref().parse::<Board>().map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
-    let usual_margin = match &board {
-        Board::Chessboard(board) => board.square,
-        Board::Charuco(board) => board.square,
-        Board::AprilGrid(board) => board.tag,
-        Board::GridBoard(board) => board.marker,
-        Board::Circles(board) => board.spacing,
-        Board::Rings(board) => board.spacing,
-        Board::Puzzle(board) => board.square,
-        Board::Dotted(board) => board.square,
-    };
+    let usual_margin = board.step();
     Some((board, usual_margin))
 }
 

@@ -4,19 +4,19 @@ use crate::CameraFileError;
 use crate::number::{finite, shortened};
 
 /// What of a text is still to be read.
-pub(super) struct Words<'a> {
+pub(crate) struct Words<'a> {
     rest: &'a str,
     /// The line of the word that was read last, counted from 1.
     line: usize,
 }
 
 impl<'a> Words<'a> {
-    pub(super) const fn new(text: &'a str) -> Self {
+    pub(crate) const fn new(text: &'a str) -> Self {
         Self { rest: text, line: 1 }
     }
 
     /// The next word; `what` is named if there is none.
-    pub(super) fn word(&mut self, what: &str) -> Result<&'a str, CameraFileError> {
+    pub(crate) fn word(&mut self, what: &str) -> Result<&'a str, CameraFileError> {
         let begin = self.rest.find(|c: char| !c.is_ascii_whitespace()).unwrap_or(self.rest.len());
         self.line += self.rest[..begin].matches('\n').count();
         self.rest = &self.rest[begin..];
@@ -30,13 +30,13 @@ impl<'a> Words<'a> {
     }
 
     /// The next word, a finite number.
-    pub(super) fn number(&mut self, what: &str) -> Result<f64, CameraFileError> {
+    pub(crate) fn number(&mut self, what: &str) -> Result<f64, CameraFileError> {
         let word = self.word(what)?;
         finite(word).map_err(|error| self.wrong(error, what))
     }
 
     /// So many numbers.
-    pub(super) fn numbers<const N: usize>(&mut self, what: &str) -> Result<[f64; N], CameraFileError> {
+    pub(crate) fn numbers<const N: usize>(&mut self, what: &str) -> Result<[f64; N], CameraFileError> {
         let mut found = [0.0; N];
         for slot in &mut found {
             *slot = self.number(what)?;
@@ -45,19 +45,19 @@ impl<'a> Words<'a> {
     }
 
     /// The next word, a whole number from zero.
-    pub(super) fn whole(&mut self, what: &str) -> Result<usize, CameraFileError> {
+    pub(crate) fn whole(&mut self, what: &str) -> Result<usize, CameraFileError> {
         let word = self.word(what)?;
         let wrong = || CameraFileError::new(format!("expected a whole number, found `{}`", shortened(word)));
         word.parse().map_err(|_| self.wrong(wrong(), what))
     }
 
     /// A mistake in the word that was read last.
-    pub(super) fn wrong(&self, error: CameraFileError, what: &str) -> CameraFileError {
+    pub(crate) fn wrong(&self, error: CameraFileError, what: &str) -> CameraFileError {
         error.on_line(self.line).of(what)
     }
 
     /// That nothing follows.
-    pub(super) fn ends(mut self) -> Result<(), CameraFileError> {
+    pub(crate) fn ends(mut self) -> Result<(), CameraFileError> {
         match self.word("") {
             Err(_) => Ok(()),
             Ok(word) => Err(CameraFileError::new(format!("expected the end of the file, found `{}`", shortened(word))).on_line(self.line)),
