@@ -128,6 +128,9 @@ fn a_problem_of_bundle_adjustment_in_the_large_ends_where_another_program_ends()
     let reference = reference(&data);
     let half = 0.5 * cost(&found);
     assert!(half <= number(&reference["half_cost"]) * (1.0 + 1e-9), "{half}");
+    // Of the same image points in NumPy: points eliminated, derivatives by complex steps.
+    assert_eq!(number(&found["counts"]["image_points"]) as i64, 31_603);
+    assert!((half / 10_073.250_356_53 - 1.0).abs() < 1e-9, "{half}");
     assert_eq!(code, Some(3));
     let doubts = found["doubts"].to_string();
     assert!(
