@@ -160,21 +160,23 @@ fn what_is_too_little_is_left_out_by_name() {
 #[test]
 fn a_point_that_runs_away_is_left_out_by_name() {
     let (mut reconstruction, truth) = ring(0.3);
-    let index = reconstruction.points.len();
+    let others = reconstruction.points.len();
     let ahead = Vector3::new(-1.0, 0.1, -0.2).normalize();
-    reconstruction.points.push(TiePoint { name: "sun".into(), position: Point3::from(80.0 * ahead) });
+    // The first of all, and seen first, so that those that stay have other places than before.
+    reconstruction.points.insert(0, TiePoint { name: "sun".into(), position: Point3::from(80.0 * ahead) });
+    reconstruction.sights.iter_mut().for_each(|sight| sight.point += 1);
     for image in [9, 0, 1] {
         let pose = reconstruction.images[image].pose;
         let parting = ahead + 2e-3 * (pose.centre.coords - Vector3::new(7.0, 0.0, 3.0));
         let ray = pose.ray(&(pose.centre + parting));
         let position = truth[image].project(ray).unwrap();
-        reconstruction.sights.push(TieSight { image, point: index, position });
+        reconstruction.sights.insert(0, TieSight { image, point: 0, position });
     }
     let found = prepared(&reconstruction, Behind::Count);
     assert!(found.behind.is_empty() && found.prepared.left_out.is_empty());
     calibrate(&found.prepared, &[], |calibration| {
         assert_eq!(calibration.prepared.far, ["sun"]);
-        assert_eq!((calibration.prepared.left_out.len(), calibration.solution.points().len()), (3, index));
+        assert_eq!((calibration.prepared.left_out.len(), calibration.solution.points().len()), (3, others));
         assert!(calibration.prepared.left_out.iter().all(|left_out| left_out.why.contains("very far away")));
         let sigma0 = calibration.solution.sigma0().unwrap();
         assert!((0.3..0.7).contains(&sigma0), "{sigma0}");
