@@ -34,12 +34,14 @@ mod several;
 mod smooth;
 mod unknown;
 mod unknown_markers;
+mod warps;
 
 pub use error::NotFound;
 pub use found::{Doubt, Found, FoundPoint};
 pub use kinds::detect;
 pub use several::{detect_all, seen_several};
 pub use unknown::{Identified, identify};
+pub use warps::warps;
 
 /// The version of what finds boards, in records.
 pub const VERSION: &str = "3";

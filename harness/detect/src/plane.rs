@@ -116,8 +116,13 @@ impl Homography {
         (map[(2, 2)].abs() > 1e-12).then(|| Self(map / map[(2, 2)]))
     }
 
-    pub(crate) fn at(&self, [u, v]: Point) -> Point {
-        let image = self.0 * Vector3::new(u, v, 1.0);
+    /// Before it is divided by its last coordinate.
+    pub(crate) fn image(&self, [u, v]: Point) -> Vector3<f64> {
+        self.0 * Vector3::new(u, v, 1.0)
+    }
+
+    pub(crate) fn at(&self, at: Point) -> Point {
+        let image = self.image(at);
         [image.x / image.z, image.y / image.z]
     }
 

@@ -25,6 +25,7 @@ pub mod target;
 pub mod testfield;
 pub mod told;
 pub mod views;
+pub mod warp;
 
 pub use control::{ControlDisc, ControlRow, MeasuredDistance, TestLength};
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
@@ -40,6 +41,7 @@ pub use station::{ObservedStation, StationRow};
 pub use target::{Affine, TargetKind, UnknownKind};
 pub use testfield::{Area, Bend, Curve, ObjectTarget, Outline, Plate, Testfield};
 pub use told::Told;
+pub use warp::Warp;
 
 /// The example of the README.
 #[cfg(doctest)]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{Affine, Covariance, PixelPoint, TargetKind};
+use crate::{Affine, Covariance, PixelPoint, TargetKind, Warp};
 
 /// Where an operator starts: an approximate position and, for operators that need one, a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,12 +15,14 @@ pub struct Start {
     pub affine: Option<Affine>,
     /// The covariance of the approximate position, px^2, if known.
     pub covariance: Option<Covariance>,
+    /// What the lens does to its picture beyond an affine map, if known.
+    pub warp: Option<Warp>,
 }
 
 impl Start {
     /// A start of which only the position is known.
     pub const fn at(position: PixelPoint) -> Self {
-        Self { position, kind: None, affine: None, covariance: None }
+        Self { position, kind: None, affine: None, covariance: None, warp: None }
     }
 }
 

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use calibench_detect::{Doubt, Found, FoundPoint, detect, detect_all, seen_several};
+use calibench_detect::{Doubt, Found, FoundPoint, detect, detect_all, seen_several, warps};
 use calibench_model::boards::{Board, BoardError, BoardPoint, Layout};
+use calibench_model::camera::ImageSize;
 use calibench_model::views::{photo_of, view_of};
-use calibench_model::{ControlDisc, ControlRow, Image, PointRow, Start, TargetKind};
+use calibench_model::{ControlDisc, ControlRow, Image, PointRow, Start, TargetKind, Warp};
 use rayon::prelude::*;
 
 use crate::names::{names, once};
@@ -114,7 +115,7 @@ impl Finder {
     pub fn find(&self, image: &Image, name: &str) -> Sighting {
         if self.each {
             return match detect_all(image, &self.board) {
-                Ok(all) => self.sighting(&all, |board| view_of(name, board + 1)),
+                Ok(all) => self.sighting((&all, image), |board| view_of(name, board + 1)),
                 Err(why) => Sighting { why: Some(why.to_string()), ..Sighting::default() },
             };
         }
@@ -124,7 +125,7 @@ impl Finder {
         match said {
             Ok(mut found) => {
                 found.doubts.extend(several);
-                Sighting { boards, ..self.sighting(&[found], |_| name.to_owned()) }
+                Sighting { boards, ..self.sighting((&[found], image), |_| name.to_owned()) }
             }
             Err(why) => {
                 let why = several.map_or_else(|| why.to_string(), |several| format!("{several}: {why}"));
@@ -139,13 +140,16 @@ impl Finder {
         format!("{}{board}", row.target)
     }
 
-    fn sighting(&self, all: &[Found], view: impl Fn(usize) -> String) -> Sighting {
-        let row = |(board, point): (usize, &FoundPoint)| PointRow {
-            image: view(board),
-            target: self.layout.points[point.index].id.clone(),
-            start: Start { kind: Some(self.layout.points[point.index].kind), affine: Some(point.affine), ..Start::at(point.position) },
+    fn sighting(&self, (all, image): (&[Found], &Image), view: impl Fn(usize) -> String) -> Sighting {
+        let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
+        let row = |(board, point, warp): (usize, &FoundPoint, Option<Warp>)| {
+            let place = &self.layout.points[point.index];
+            let start = Start { kind: Some(place.kind), affine: Some(point.affine), warp, ..Start::at(point.position) };
+            PointRow { image: view(board), target: place.id.clone(), start }
         };
-        let points = all.iter().enumerate().flat_map(|(board, found)| found.points.iter().map(move |point| (board, point)));
+        let points = all.iter().enumerate().flat_map(|(board, found)| {
+            found.points.iter().zip(warps(&self.layout, found, size)).map(move |(point, warp)| (board, point, warp))
+        });
         Sighting {
             rows: points.map(row).collect(),
             why: None,

@@ -123,6 +123,7 @@ fn measured_sighting<'m>(
     let start = |given: Start| Start {
         kind: given.kind,
         affine: given.affine.filter(|_| finder.tells_size()),
+        warp: given.warp,
         ..Start::at(PixelPoint::new(given.position.x.round(), given.position.y.round()))
     };
     let starts: Vec<Start> = found.rows.iter().map(|row| start(row.start)).collect();

@@ -280,7 +280,7 @@ impl<'a> Cells<'a> {
             let problem = format!("no covariance: expected sxx, syy >= 0 and sxy^2 <= sxx syy, found {sxx}, {sxy}, {syy}");
             return Err(self.wrong(SXX, problem));
         }
-        let start = Start { position, kind, affine, covariance };
+        let start = Start { kind, affine, covariance, ..Start::at(position) };
         Ok(PointRef { image: self.required_name(IMAGE)?, target: self.required_name(TARGET)?, start })
     }
 

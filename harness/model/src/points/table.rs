@@ -158,7 +158,7 @@ impl Points {
     /// Position, kind, affine start and covariance of point `index`.
     pub fn start(&self, index: usize) -> Start {
         let (kind, affine, covariance) = (self.kind.get(index), self.affine.get(index), self.covariance.get(index));
-        Start { position: self.position[index], kind, affine, covariance }
+        Start { position: self.position[index], kind, affine, covariance, warp: None }
     }
 
     /// Point `index`.

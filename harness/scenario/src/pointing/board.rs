@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use calibench_detect::{FoundPoint, detect};
+use calibench_detect::{detect, warps};
 use calibench_model::boards::Board;
+use calibench_model::camera::ImageSize;
 use calibench_model::{Image, PixelPoint, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -42,27 +43,29 @@ pub struct BoardPointing {
 }
 
 impl BoardPointing {
-    /// The start that each target gets: the whole pixel where its point was found, its kind and its axes. A point that was taken for another is another's start.
+    /// The start that each target gets: the whole pixel where its point was found, its kind, its axes, and what the lens does to it beyond them. A point that was taken for another is another's start.
     ///
     /// Of boards without readable marks, whose points are counted from one of several corners, the truth says which point is meant and nothing more.
     pub(super) fn starts<'t>(&self, image: &Image, targets: impl IntoIterator<Item = (&'t str, PixelPoint)>) -> Vec<Option<Start>> {
         let (Ok(layout), Ok(found)) = (self.board.layout(), detect(image, &self.board)) else {
             return targets.into_iter().map(|_| None).collect();
         };
-        let start = |point: &FoundPoint| Start {
-            kind: Some(layout.points[point.index].kind),
-            affine: Some(point.affine),
-            ..Start::at(PixelPoint::new(point.position.x.round(), point.position.y.round()))
+        let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
+        let warps = warps(&layout, &found, size);
+        let start = |place: usize| {
+            let point = &found.points[place];
+            let position = PixelPoint::new(point.position.x.round(), point.position.y.round());
+            Start { kind: Some(layout.points[point.index].kind), affine: Some(point.affine), warp: warps[place], ..Start::at(position) }
         };
         if self.board.is_coded() {
-            let starts: HashMap<&str, Start> =
-                found.points.iter().map(|point| (layout.points[point.index].id.as_str(), start(point))).collect();
+            let id = |place: usize| layout.points[found.points[place].index].id.as_str();
+            let starts: HashMap<&str, Start> = (0..found.points.len()).map(|place| (id(place), start(place))).collect();
             return targets.into_iter().map(|(id, _)| starts.get(id).copied()).collect();
         }
         let positions: Vec<PixelPoint> = found.points.iter().map(|point| point.position).collect();
         let nearest = |truth: PixelPoint| {
             let near = truth.nearest(&positions, self.within)?;
-            found.points.iter().find(|point| point.position == near).map(start)
+            positions.iter().position(|position| *position == near).map(start)
         };
         targets.into_iter().map(|(_, truth)| nearest(truth)).collect()
     }

@@ -3,6 +3,7 @@
 mod lens;
 mod scene;
 mod textures;
+mod warps;
 
 use calibench_detect::{Doubt, detect};
 use calibench_model::boards::{Board, Chessboard};

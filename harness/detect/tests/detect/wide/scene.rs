@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use calibench_model::boards::{Board, Chessboard, Layout};
+use calibench_model::camera::ImageSize;
 use calibench_model::testfield::PlatePoint;
 use calibench_model::{Image, PixelPoint};
 
@@ -112,6 +113,11 @@ impl Scene {
         let axes = [u, down.map(|part| -part)];
         let scene = Self { camera, columns, rows, layout, middle: sight.map(|part| far * part), axes, blur, noise, seed };
         (lens.reaches(half_field) && scene.is_whole()).then_some(scene)
+    }
+
+    /// The size of the image.
+    pub fn size(&self) -> ImageSize {
+        ImageSize { width: self.camera.width as u32, height: self.camera.height as u32 }
     }
 
     fn before(&self, [u, v]: PlatePoint) -> [f64; 3] {

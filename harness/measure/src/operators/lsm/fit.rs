@@ -1,6 +1,6 @@
 //! Gauss-Newton for mask and grey values.
 
-use calibench_model::{Affine, Covariance, Image, Rejection, TargetKind};
+use calibench_model::{Affine, Covariance, Image, Rejection, TargetKind, Warp};
 
 use super::area::{self, WIDEST};
 use super::mask::{Mask, Rule};
@@ -60,6 +60,8 @@ pub(super) struct Work {
     pub(super) planes: Planes,
     /// The profile of the blur.
     pub(super) profile: Profile,
+    /// What the lens does to the mask beyond its affine map, if it does.
+    pub(super) warp: Option<Warp>,
 }
 
 impl Work {
@@ -89,7 +91,7 @@ impl Work {
 
     pub(super) fn draw(&mut self, mask: &Mask, parameters: &Parameters, wanted: (Derivatives, Rule)) {
         self.profile.set(parameters.sigma);
-        self.planes.draw(mask, &parameters.pose, &self.profile, wanted);
+        self.planes.draw(mask, (&parameters.pose, self.warp.as_ref()), &self.profile, wanted);
     }
 
     #[inline(always)]

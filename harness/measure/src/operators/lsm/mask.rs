@@ -124,16 +124,16 @@ fn visible(curve: &Curve, affine: &Affine, at: [f64; 2], bounds: &Bounds) -> (f6
     (a.max(c), b.min(d))
 }
 
-/// The rows from and to which a line runs within the bounds' rows and to the right of all their columns; `None` if it does not.
+/// The places from and to which a line runs within the bounds' rows and to the right of all their columns; `None` if it does not.
 #[inline(always)]
-pub(super) fn beyond(curve: &Curve, affine: &Affine, at: [f64; 2], bounds: &Bounds) -> Option<(f64, f64)> {
+pub(super) fn beyond(curve: &Curve, affine: &Affine, at: [f64; 2], bounds: &Bounds) -> Option<[[f64; 2]; 2]> {
     let Curve::Line { from, to } = *curve else { return None };
     let ([x0, y0], [x1, y1]) = (map(affine, from), map(affine, to));
     let (c, d) = between(at[0] + x0, at[0] + x1, (bounds.columns.1, f64::INFINITY));
     let (a, b) = between(at[1] + y0, at[1] + y1, bounds.rows);
     let (begin, end) = (a.max(c), b.min(d));
-    let row = |t: f64| at[1] + y0 + t * (y1 - y0);
-    (begin < end).then(|| (row(begin), row(end)))
+    let place = |t: f64| [at[0] + x0 + t * (x1 - x0), at[1] + y0 + t * (y1 - y0)];
+    (begin < end).then(|| [place(begin), place(end)])
 }
 
 /// Of a way from `from` to `to` the part between `low` and `high`, as fractions; empty if nothing is.

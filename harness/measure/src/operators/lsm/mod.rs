@@ -29,6 +29,8 @@ use crate::residuals::misfit;
 const LARGEST: f64 = 1.0;
 /// See [`misfit`]: of 702 corners of OpenCV's sample photographs none leaves as much, of 200 corners beside a bar all that are more than 0.25 px off do.
 const MISFIT: f64 = 0.2;
+/// A lens that moves nothing within the window by as much, px, maps it affinely.
+const FLAT: f64 = 1e-3;
 
 /// Least-squares matching of an artificial mask: an ideal shape (see [`TargetKind::outlines`]), mapped into the image by an affine
 /// transformation, blurred there by a pixel and a Gaussian, with a grey value for the ground and a contrast: eight parameters, or nine with
@@ -39,6 +41,8 @@ const MISFIT: f64 = 0.2;
 /// the affine start from the start, or from `size` and the image, or from the image alone: the moments of the pixels beyond a
 /// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their
 /// grey-weighted centroid.
+///
+/// Where the start tells what the lens does to the picture beyond an affine map, as the points around it on a board do, the mask is warped so; a disc's is not, whose centre is that of the ellipse that is seen, as for all operators.
 ///
 /// The position is that of the mask's reference point; a triangle's is its centroid. Covariance: `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
@@ -115,7 +119,7 @@ impl Lsm {
     }
 
     fn work(&self) -> Work {
-        Work { planes: Planes::new(self.window), profile: self.profile.clone() }
+        Work { planes: Planes::new(self.window), profile: self.profile.clone(), warp: None }
     }
 
     /// The mask for a start.
@@ -126,6 +130,8 @@ impl Lsm {
 
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
+        let is_disc = self.shape.or(start.kind) == Some(TargetKind::Disc);
+        work.warp = start.warp.filter(|warp| !is_disc && warp.farthest(half as f64) >= FLAT);
         let whole = self.beside && start.affine.is_some() && self.mask(start).is_ok_and(|mask| !mask.is_open());
         let first = start::centre(image, start, half, whole)?;
         let range = work.observe(image, first, half)?;

@@ -1,10 +1,10 @@
 //! Coverage of every pixel by the mask, and its derivatives, by line integrals along the mask's border.
 
-use calibench_model::Affine;
+use calibench_model::{Affine, Warp};
 
 use super::area::Grey;
 use super::bank::Bank;
-use super::border;
+use super::border::{self, Bent};
 use super::mask::{Mask, Rule};
 use super::profile::{LANES, Profile};
 use crate::residuals::Structure;
@@ -150,9 +150,9 @@ impl Planes {
     }
 
     /// Coverage for a mask, and of its derivatives those that are asked for: the others keep what they were.
-    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, wanted: (Derivatives, Rule)) {
+    pub(super) fn draw(&mut self, mask: &Mask, (pose, warp): (&Pose, Option<&Warp>), profile: &Profile, wanted: (Derivatives, Rule)) {
         let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
-        border::draw(window, &mut self.bank, mask, pose, profile, wanted);
+        border::draw(window, &mut self.bank, mask, &Bent { pose, warp }, profile, wanted);
     }
 
     /// Ground and contrast that fit the coverages best; `None` if these do not differ.

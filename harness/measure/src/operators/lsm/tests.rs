@@ -1,4 +1,4 @@
-use calibench_model::Affine;
+use calibench_model::{Affine, Warp};
 
 use super::mask::Rule;
 use super::planes::{BLUR, COVERAGE, Derivatives, Pose};
@@ -58,7 +58,7 @@ fn drawn(picture: &Picture, pixels: usize) -> Planes {
     let mask = Mask::new(picture.kind).unwrap();
     planes.draw(
         &mask,
-        &Pose { at: picture.at, affine: picture.affine },
+        (&Pose { at: picture.at, affine: picture.affine }, None),
         &Profile::new(picture.sigma),
         (Derivatives::PoseAndBlur, Rule::Exact),
     );
@@ -274,4 +274,66 @@ fn what_stands_beside_the_target_does_not_pass_silently() {
     println!("beside a bar {kept} of 200 are measured, {wrong} of them wrong; {lost} alone are rejected");
     assert!(wrong <= 2 && lost == 0, "{wrong} of {kept}, {lost}");
     assert!(untested > 40, "without the test {untested} are wrong");
+}
+
+/// A picture whose target a lens has warped, each pixel the mean of finer ones, blurred.
+fn warped(picture: &Picture, warp: &Warp) -> Image<'static> {
+    let fine = 16;
+    let inside = |x: f64, y: f64| {
+        // The place that is moved here, by steps back.
+        let mut offset = [x - picture.at[0], y - picture.at[1]];
+        for _ in 0..20 {
+            let shift = warp.shift(offset);
+            offset = [x - picture.at[0] - shift[0], y - picture.at[1] - shift[1]];
+        }
+        let Affine { axx, axy, ayx, ayy } = picture.affine;
+        let determinant = axx * ayy - axy * ayx;
+        let [u, v] = [(ayy * offset[0] - axy * offset[1]) / determinant, (axx * offset[1] - ayx * offset[0]) / determinant];
+        match picture.kind {
+            TargetKind::ChessCorner => u * v > 0.0,
+            TargetKind::Corner => u > 0.0 && v > 0.0,
+            _ => u.abs() < 0.5 && v.abs() < 0.5,
+        }
+    };
+    let reach = 6 * fine as i64;
+    let wide = SIDE as i64 * fine as i64 + 2 * reach;
+    let place = |index: i64| ((index - reach) as f64 + 0.5) / fine as f64 - 0.5;
+    let grey: Vec<f64> = (0..wide * wide).map(|i| f64::from(u8::from(inside(place(i % wide), place(i / wide))))).collect();
+    // Pixel and Gaussian, along rows and then along columns.
+    let sigma = picture.sigma * fine as f64;
+    let step = |t: f64| statrs::function::erf::erf(t / (sigma * std::f64::consts::SQRT_2));
+    let half = 0.5 * fine as f64;
+    let weight = |t: f64| {
+        let integral = |t: f64| t * step(t) + sigma * (2.0 / std::f64::consts::PI).sqrt() * (-0.5 * (t / sigma).powi(2)).exp();
+        0.5 * (integral(t + half + 0.5) - integral(t + half - 0.5) - integral(t - half + 0.5) + integral(t - half - 0.5)) / fine as f64
+    };
+    let middle = |pixel: usize| reach + (pixel * fine) as i64 + fine as i64 / 2;
+    let around = || -reach..reach;
+    let kernel: Vec<f64> = around().map(|k| weight(k as f64 + 0.5)).collect();
+    let mut rows = vec![0.0; SIDE * wide as usize];
+    for (column, row) in (0..SIDE).flat_map(|column| (0..wide).map(move |row| (column, row))) {
+        let sum = around().zip(&kernel).map(|(k, weight)| weight * grey[(row * wide + middle(column) + k) as usize]).sum::<f64>();
+        rows[row as usize * SIDE + column] = sum;
+    }
+    Image::from_fn(SIDE, SIDE, |x, y| {
+        let sum = around().zip(&kernel).map(|(k, weight)| weight * rows[(middle(y) + k) as usize * SIDE + x]).sum::<f64>();
+        (picture.ground + picture.contrast * sum) as f32
+    })
+}
+
+#[test]
+fn a_mask_is_warped_as_the_start_tells() {
+    let warp = Warp { xx: [0.003, -0.005], xy: [-0.002, 0.003], yy: [0.006, 0.002] };
+    for kind in [TargetKind::ChessCorner, TargetKind::Corner, TargetKind::Square] {
+        let picture = picture(kind, if kind == TargetKind::Square { 9.0 } else { 11.0 }, 0.8, 1);
+        let image = warped(&picture, &warp);
+        let error = |warp| {
+            let start = Start { warp, ..start(&picture, 0.3, -0.2) };
+            let found = operator("lsm:window=15").measure(&image, &start).unwrap().position;
+            (found.x - picture.at[0]).hypot(found.y - picture.at[1])
+        };
+        let (affine, told) = (error(None), error(Some(warp)));
+        println!("{kind}: affine {affine:.1e}, told {told:.1e} px");
+        assert!(told < 2e-3 && affine > 5.0 * told, "{kind}: {told:e} {affine:e}");
+    }
 }

@@ -12,7 +12,7 @@ mod start;
 mod sums;
 mod window;
 
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns, Warp};
 use nalgebra::SVector;
 
 use crate::following::{Fitted, Rest, follow, in_smaller_windows};
@@ -50,11 +50,14 @@ const FAINT: f64 = 0.03;
 const MISFIT: f64 = 0.2;
 /// As much of it makes smaller windows worth a try: a neighbour at the border of the window leaves no more.
 const DOUBT: f64 = 0.05;
+/// Edges that leave their tangents by less than this within the window, px, are taken for straight.
+const STRAIGHT: f64 = 1e-3;
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
 /// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the photosite's area (a square, as wide as the
 /// pixel unless `photosite` says otherwise). Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change
-/// over the window, and the curvature of each edge (a lens bends the edges of large windows; to second order, for radii far beyond the window).
+/// over the window, and the curvature of each edge (a lens bends the edges of large windows; to second order, for radii far beyond the window). Where the start tells how the lens warps
+/// what is pictured, as the points around it on a board do, edges are as curved as that says, without an unknown: estimated curvatures cost precision.
 /// For white noise of equal variance this is the maximum-likelihood estimate.
 ///
 /// What changes linearly: `gradient` 1, something that is added to the grey values, as stray light (two unknowns); 2, the light, which multiplies them (two; grey
@@ -117,18 +120,28 @@ impl ParametricCorner {
         }
     }
 
-    /// The fit over a window of some side, px, from the edges seen around a place, px.
-    fn fitted(&self, window: (&Image, usize), position: [f64; 2]) -> Result<Fitted, Rejection> {
-        let guess = start::directions(window.0, position, window.1 as i64 / 2).ok_or(Rejection::NoCorner)?;
-        match (self.gradient, self.curvature) {
-            (EVEN, false) => self.fit::<7, EVEN, false>(window, &guess),
-            (ADDED, false) => self.fit::<9, ADDED, false>(window, &guess),
-            (LIGHT, false) => self.fit::<9, LIGHT, false>(window, &guess),
-            (_, false) => self.fit::<11, EACH, false>(window, &guess),
-            (EVEN, true) => self.fit::<9, EVEN, true>(window, &guess),
-            (ADDED, true) => self.fit::<11, ADDED, true>(window, &guess),
-            (LIGHT, true) => self.fit::<11, LIGHT, true>(window, &guess),
-            (_, true) => self.fit::<13, EACH, true>(window, &guess),
+    /// The fit over a window of some side, px, from the edges seen around a place, px; `warp` as the start says.
+    fn fitted(&self, window: (&Image, usize), position: [f64; 2], warp: Option<Warp>) -> Result<Fitted, Rejection> {
+        let half = (window.1 / 2) as f64;
+        let guess = start::directions(window.0, position, half as i64).ok_or(Rejection::NoCorner)?;
+        let is_curved = warp.is_some_and(|warp| {
+            let curvature = |normal: f64| warp.curvature([normal.cos(), normal.sin()]).abs();
+            guess.normals.iter().any(|normal| 0.5 * curvature(*normal) * half * half >= STRAIGHT)
+        });
+        let warp = warp.filter(|_| is_curved);
+        match (self.gradient, self.curvature, is_curved) {
+            (EVEN, false, false) => self.fit::<7, EVEN, false>(window, &guess, warp),
+            (ADDED, false, false) => self.fit::<9, ADDED, false>(window, &guess, warp),
+            (LIGHT, false, false) => self.fit::<9, LIGHT, false>(window, &guess, warp),
+            (_, false, false) => self.fit::<11, EACH, false>(window, &guess, warp),
+            (EVEN, false, true) => self.fit::<7, EVEN, true>(window, &guess, warp),
+            (ADDED, false, true) => self.fit::<9, ADDED, true>(window, &guess, warp),
+            (LIGHT, false, true) => self.fit::<9, LIGHT, true>(window, &guess, warp),
+            (_, false, true) => self.fit::<11, EACH, true>(window, &guess, warp),
+            (EVEN, true, _) => self.fit::<9, EVEN, true>(window, &guess, warp),
+            (ADDED, true, _) => self.fit::<11, ADDED, true>(window, &guess, warp),
+            (LIGHT, true, _) => self.fit::<11, LIGHT, true>(window, &guess, warp),
+            (_, true, _) => self.fit::<13, EACH, true>(window, &guess, warp),
         }
     }
 
@@ -136,10 +149,12 @@ impl ParametricCorner {
         &self,
         (image, side): (&Image, usize),
         guess: &start::Guess,
+        warp: Option<Warp>,
     ) -> Result<Fitted, Rejection> {
         let half = side as i64 / 2;
-        let setting = Setting { side, photosite: self.photosite, mean: guess.mean, half: guess.half };
+        let setting = Setting { side, photosite: self.photosite, mean: guess.mean, half: guess.half, warp };
         let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
+        let free = Window::<P, GRADIENT, CURVED>::FREE;
         let mut x = SVector::<f64, P>::zeros();
         x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
         let Rest { at, x, normal } = follow(&mut window, (image, half), guess.position, x)?;
@@ -153,7 +168,7 @@ impl ParametricCorner {
             return Err(Rejection::NoCorner);
         }
         let redundancy = (side * side - P) as f64;
-        let is_geometry = |unknown: usize| unknown < BASE - 2 || CURVED && unknown >= P - 2;
+        let is_geometry = |unknown: usize| unknown < BASE - 2 || free && unknown >= P - 2;
         let cofactor = normal.cofactor(HALF, is_geometry).ok_or(Rejection::ErrorEllipse)?;
         let crossing = (x[2] - x[3]).sin().abs();
         if x[HALF].powi(2) * crossing < SEEN * SEEN * normal.omega / redundancy * cofactor * structure.spread() {
@@ -202,7 +217,7 @@ impl Operator for ParametricCorner {
         if self.search > 0 && !start::is_like_its_opposite(image, position, half) {
             return Err(Rejection::NoCorner);
         }
-        in_smaller_windows(self.window, &SMALLER, |side| self.fitted((image, side), position))
+        in_smaller_windows(self.window, &SMALLER, |side| self.fitted((image, side), position, start.warp))
     }
 
     fn unknowns(&self) -> Unknowns {

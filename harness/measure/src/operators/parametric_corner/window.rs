@@ -3,7 +3,7 @@
 //! They are those of a model that takes the photosite's area for one Gaussian. What that leaves out is worked out once in a while and taken from the grey
 //! values: see [`Laid::correct`].
 
-use calibench_model::Image;
+use calibench_model::{Image, Warp};
 use nalgebra::SVector;
 
 use super::area::Strip;
@@ -25,17 +25,28 @@ const EVALUATIONS: usize = 60;
 /// What single precision leaves of a residual, in units of half the contrast.
 const PRECISION: f64 = 2e-7;
 
-/// What is the same for every fit of an image: side of the window and of the photosites, px; and grey values that are about the mean of the two and half their
-/// difference.
+/// What is the same for every fit of an image: side of the window and of the photosites, px; grey values that are about the mean of the two and half their
+/// difference; and what curves the edges where that is told and not estimated.
 #[derive(Clone, Copy)]
 pub(super) struct Setting {
     pub(super) side: usize,
     pub(super) photosite: f64,
     pub(super) mean: f64,
     pub(super) half: f64,
+    pub(super) warp: Option<Warp>,
 }
 
-/// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], those of the `GRADIENT`, a curvature an edge if `CURVED`.
+/// How many unknowns there are with this gradient and without curvatures.
+pub(super) const fn straight_unknowns(gradient: u8) -> usize {
+    match gradient {
+        EVEN => BASE,
+        ADDED | LIGHT => BASE + 2,
+        _ => BASE + 4,
+    }
+}
+
+/// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], those of the `GRADIENT`, and a curvature an edge if there is room; else curvatures, if `CURVED`, are
+/// those that are told.
 pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> {
     pub(super) setting: Setting,
     /// Grey values, corrected.
@@ -48,6 +59,9 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: b
 }
 
 impl<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'a, P, GRADIENT, CURVED> {
+    /// Whether curvatures are unknown.
+    pub(super) const FREE: bool = CURVED && P > straight_unknowns(GRADIENT);
+
     pub(super) fn new(image: &'a Image, setting: Setting) -> Self {
         let Setting { side, mean, half, .. } = setting;
         Self { setting, greys: GreyWindow::new(image, side, mean, half), pixels: Lists::new(side), sorted: None, patience: EVALUATIONS }
@@ -55,7 +69,8 @@ impl<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'a, P, G
 
     /// The shape among the unknowns.
     pub(super) fn shape(&self, x: &SVector<f64, P>) -> Shape {
-        let curvature = if CURVED { [x[P - 2], x[P - 1]] } else { [0.0; 2] };
+        let told = |warp: Warp| [x[2], x[3]].map(|normal| warp.curvature([normal.cos(), normal.sin()]));
+        let curvature = if Self::FREE { [x[P - 2], x[P - 1]] } else { self.setting.warp.map_or([0.0; 2], told) };
         let photosite = self.setting.photosite;
         Shape { position: [x[0], x[1]], normals: [x[2], x[3]], variance: x[4], curvature, photosite }
     }
@@ -230,7 +245,7 @@ impl<const P: usize, const GRADIENT: u8> Rows<'_, P, GRADIENT> {
             for axis in 0..2 {
                 j[axis][i] = scale * field.position[axis][at];
                 j[2 + axis][i] = scale * field.normals[axis][at];
-                // The curvatures are last; without them this is overwritten.
+                // The curvatures are last; where they are not unknown this is overwritten.
                 j[P - 2 + axis][i] = scale * field.curvature[axis][at];
             }
             j[4][i] = scale * field.variance[at];

@@ -22,7 +22,7 @@ fn lit(corner: &Chess, share: f64, direction: f64) -> Chess {
 
 /// Half the derivative of the squared residuals is `-J^T r`: by differences, for unknowns that are far from right.
 fn check_right_hand_side<const P: usize, const GRADIENT: u8, const CURVED: bool>(image: &Image) {
-    let setting = Setting { side: 15, photosite: 0.9, mean: 0.4, half: 0.35 };
+    let setting = Setting { side: 15, photosite: 0.9, mean: 0.4, half: 0.35, warp: None };
     let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
     window.greys.centre_on((15, 15));
     let start = [0.3, -0.2, 0.1, 1.5, 0.6, 0.1, 0.8];

@@ -88,7 +88,7 @@ fn a_window_that_is_laid_anew_reads_its_own_pixels() {
     let image = quadrature_images::image(&chess(0.5, 0.4, 0.7, [0.2, -0.3]).render(SIDE), SIDE);
     let x = SVector::from([0.2, -0.3, 0.4 - 0.7, 0.4 + 0.7, 0.5, 0.0, 1.0]);
     let normal = |pixels: &[(i64, i64)]| {
-        let setting = Setting { side: 15, photosite: 1.0, mean: 0.5, half: 0.3 };
+        let setting = Setting { side: 15, photosite: 1.0, mean: 0.5, half: 0.3, warp: None };
         let mut window = Window::<7, EVEN, false>::new(&image, setting);
         let laid = pixels.iter().map(|pixel| {
             window.centre_on(*pixel);
@@ -104,7 +104,7 @@ fn a_window_that_is_laid_anew_reads_its_own_pixels() {
 fn residuals_elsewhere_leave_the_normal_equations_as_they_are() {
     let image = quadrature_images::image(&chess(0.5, 0.4, 0.7, [0.2, -0.3]).render(SIDE), SIDE);
     let x = SVector::from([0.2, -0.3, 0.4 - 0.7, 0.4 + 0.7, 0.5, 0.0, 1.0]);
-    let setting = Setting { side: 15, photosite: 1.0, mean: 0.5, half: 0.3 };
+    let setting = Setting { side: 15, photosite: 1.0, mean: 0.5, half: 0.3, warp: None };
     let mut window = Window::<7, EVEN, false>::new(&image, setting);
     window.centre_on((15, 15));
     let before = window.normal(&x).unwrap();
@@ -187,6 +187,48 @@ fn a_gradient_and_bent_edges_are_found() {
     let (with, without) = (error(&bent, "window=31,curvature=1", 51), error(&bent, "window=31", 51));
     println!("bent: {with:e} {without:e}");
     assert!(with < 2e-4 && without > 10.0 * with, "{with:e} {without:e}");
+}
+
+/// The warp of which the edges of a corner are the lines.
+fn warp(corner: &Chess, mixed: [f64; 2]) -> Warp {
+    // Of unit way along each edge, which turns away from its normal where the curvature is positive.
+    let tangents = corner.normals.map(|normal| [-normal.sin(), normal.cos()]);
+    let [first, second] = [0, 1].map(|edge| {
+        let (sine, cosine) = corner.normals[edge].sin_cos();
+        [-corner.curvature[edge] * cosine, -corner.curvature[edge] * sine]
+    });
+    Warp::of_derivatives(tangents, [first, mixed, second]).unwrap()
+}
+
+#[test]
+fn edges_are_as_curved_as_the_start_tells() {
+    for (curvature, tilt, spec) in [([0.004, -0.0025], 0.5, "window=15"), ([-0.006, -0.003], 0.9, "window=21,gradient=1")] {
+        let bent = Chess { curvature, position: [25.2, 24.7], ..chess(tilt, 0.4, 0.9, [0.0; 2]) };
+        let image = quadrature_images::image(&bent.render(51), 51);
+        let error = |warp| {
+            let start = Start { warp, ..Start::at(PixelPoint::new(26.0, 24.0)) };
+            let found = operator(spec).measure(&image, &start).unwrap();
+            (found.position.x - bent.position[0]).hypot(found.position.y - bent.position[1])
+        };
+        let (straight, told) = (error(None), error(Some(warp(&bent, [0.013, -0.021]))));
+        println!("straight {straight:.1e}, told {told:.1e} px");
+        assert!(told < 2e-4 && straight > 0.02, "{told:e} {straight:e}");
+    }
+}
+
+#[test]
+fn what_is_hardly_curved_is_measured_as_straight_to_the_bit() {
+    let corner = chess(0.5, 0.4, 0.9, [0.2, -0.3]);
+    let image = quadrature_images::image(&corner.render(SIDE), SIDE);
+    let at = |curvature| {
+        let start =
+            Start { warp: Some(warp(&Chess { curvature: [curvature; 2], ..corner }, [0.0; 2])), ..Start::at(PixelPoint::new(15.0, 15.0)) };
+        let found = operator("window=15").measure(&image, &start).unwrap();
+        (found.position.x.to_bits(), found.position.y.to_bits())
+    };
+    // At half the window's side, 7 px, arcs are 0.98e-3 and 1.23e-3 px off their tangents.
+    assert_eq!(at(4e-5), at(0.0));
+    assert_ne!(at(5e-5), at(0.0));
 }
 
 #[test]
