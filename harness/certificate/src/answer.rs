@@ -119,4 +119,14 @@ pub struct Board {
     pub bend: Option<[f64; 3]>,
     pub sigma: Option<[f64; 3]>,
     pub p: Option<f64>,
+    /// What is stated of the print's scale.
+    pub scale: Option<Scale>,
+    /// What is stated of each coordinate of a point of the board, object units.
+    pub print_noise: Option<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+pub struct Scale {
+    pub value: f64,
+    pub sigma: f64,
 }

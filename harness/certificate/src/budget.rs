@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::answer::{Answer, OverFrame};
+use crate::answer::{Answer, OverFrame, Scale};
 use crate::digits::{three, with_uncertainty};
 use crate::record::Record;
 
@@ -62,12 +62,10 @@ impl Budget {
         let mut sources = vec![measured(answer, formal), by_images(record, excess, over)];
         sources.extend(board(record, answer));
         sources.push(later());
-        let stated = record.board.iter().flat_map(|board| &board.stated).filter_map(|stated| stated.contribution_px);
         let parts: Vec<(f64, f64)> = formal
             .map(|px| (px, if redundancy > 0.0 { redundancy } else { f64::INFINITY }))
             .into_iter()
             .chain(excess.zip(record.groups).map(|(px, groups)| (px, groups as f64 - 1.0)))
-            .chain(stated.map(|px| (px, f64::INFINITY)))
             .collect();
         let combined = formal.map(|_| parts.iter().map(|(px, _)| px * px).sum::<f64>().sqrt());
         let freedom = effective(&parts);
@@ -141,25 +139,25 @@ fn board(record: &Record, answer: &Answer) -> Vec<Source> {
         sensitivity: sensitivity.into(),
         contribution,
     };
-    let Some(board) = &record.board else {
+    let flatness = |name: &str| shape(answer).map(|(value, contribution)| row(name, value, "-", "-", contribution));
+    if record.board.is_none() {
         let value = if answer.counts.control_points == 0 { "no control".into() } else { "as its file states".into() };
-        let shape = shape(answer).map(|(value, contribution)| row("Shape of the control", value, "-", "-", contribution));
-        return [row("Control points", value, "within the adjustment", "-", Contribution::Within)].into_iter().chain(shape).collect();
+        let control = row("Control points", value, "within the adjustment", "-", Contribution::Within);
+        return [control].into_iter().chain(flatness("Shape of the control")).collect();
+    }
+    // A board that is larger in all directions is farther away: the camera is the same.
+    let scale = match answer.board.scale {
+        Some(Scale { value, sigma }) => {
+            let (value, sigma) = with_uncertainty(value, sigma);
+            row("Board: scale of the print", format!("{value} \u{b1} {sigma}, stated"), "B, normal", "0", Contribution::None)
+        }
+        None => row("Board: scale of the print", "taken as exact".into(), "-", "0", Contribution::None),
     };
-    let mut rows = Vec::new();
-    for stated in &board.stated {
-        let (value, sigma) = with_uncertainty(stated.value, stated.sigma);
-        let contribution = stated.contribution_px.map_or(Contribution::Within, Contribution::Px);
-        rows.push(row(&format!("Board: {}", stated.what), format!("{value} \u{b1} {sigma} {}", stated.unit), "B, normal", "-", contribution));
-    }
-    for what in &board.exact {
-        // A board that is larger in all directions is farther away: the camera is the same.
-        let is_scale = what.contains("scale");
-        let (sensitivity, contribution) = if is_scale { ("0", Contribution::None) } else { ("-", Contribution::NotEvaluated) };
-        rows.push(row(&format!("Board: {what}"), "taken as exact".into(), "-", sensitivity, contribution));
-    }
-    rows.extend(shape(answer).map(|(value, contribution)| row("Board: flatness", value, "-", "-", contribution)));
-    rows
+    let places = match answer.board.print_noise {
+        Some(sigma) => row("Board: places of its points", format!("{} object units, stated", three(sigma)), "B, normal", "-", Contribution::Within),
+        None => row("Board: places of its points", "taken as exact".into(), "-", "-", Contribution::NotEvaluated),
+    };
+    [scale, places].into_iter().chain(flatness("Board: flatness")).collect()
 }
 
 /// What was made of the shape of a board.

@@ -16,8 +16,7 @@ mod verify;
 pub use certified::{CertificateError, Certified, Sealed};
 pub use digest::{digest_of, digest_of_file, line};
 pub use record::{
-    BoardRecord, CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, LIST_FILE, PlaceRecord, RECORD, RECORD_FILE, Record, Role, Stated,
-    TaskFigure,
+    CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, LIST_FILE, PlaceRecord, RECORD, RECORD_FILE, Record, Role, TaskFigure,
 };
 pub use verify::{Pages, Verified, attached, verify};
 
@@ -25,3 +24,6 @@ pub use verify::{Pages, Verified, attached, verify};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+#[cfg(test)]
+mod tests;

@@ -23,8 +23,8 @@ pub struct Record {
     pub groups: Option<usize>,
     /// How image points were measured; `None` where they were given.
     pub method: Option<String>,
-    /// What the board is, and what is known of it; `None` without one.
-    pub board: Option<BoardRecord>,
+    /// The board's name in commands, as `chessboard:9x6:25`; `None` without one.
+    pub board: Option<String>,
     /// Of each camera what the answer does not say, in its order.
     pub cameras: Vec<CameraRecord>,
     /// What tasks cost with this calibration.
@@ -32,33 +32,9 @@ pub struct Record {
     pub tasks: Vec<TaskFigure>,
     /// The files, in the order of the list of digests.
     pub files: Vec<FileEntry>,
-}
-
-/// What is known of a board.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BoardRecord {
-    /// Its name in commands, as `chessboard:9x6:25`.
-    pub name: String,
-    /// What was stated of its errors, with a standard uncertainty.
+    /// What was read and has no digest, as pipes: it cannot be read again.
     #[serde(default)]
-    pub stated: Vec<Stated>,
-    /// What was not stated, and is taken as exact.
-    pub exact: Vec<String>,
-}
-
-/// An error of a board that was stated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stated {
-    /// What it is of, as `scale of the print`.
-    pub what: String,
-    /// Its value.
-    pub value: f64,
-    /// Its standard uncertainty.
-    pub sigma: f64,
-    /// The unit of both.
-    pub unit: String,
-    /// Standard uncertainty of the image of a point far away that comes of it, px RMS over the frame, where it is not within the adjustment.
-    pub contribution_px: Option<f64>,
+    pub without_digest: Vec<String>,
 }
 
 /// What is known of a camera beside its calibration.

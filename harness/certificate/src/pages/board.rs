@@ -1,21 +1,23 @@
 //! What the camera was calibrated against, and what is known of that.
 
 use super::{TEXT, Told, paragraph};
-use crate::digits::with_uncertainty;
+use crate::digits::{three, with_uncertainty};
 use crate::document::Paper;
 
 pub(super) fn write(paper: &mut Paper, y: f64, told: &Told<'_>) -> f64 {
     let answer = told.answer;
     let mut words = match &told.certificate.record.board {
         Some(board) => {
-            let stated = board.stated.iter().map(|stated| {
-                let (value, sigma) = with_uncertainty(stated.value, stated.sigma);
-                format!("{} {value} \u{b1} {sigma} {}", stated.what, stated.unit)
+            let scale = answer.board.scale.map(|scale| {
+                let (value, sigma) = with_uncertainty(scale.value, scale.sigma);
+                format!("scale of the print {value} \u{b1} {sigma}")
             });
-            let stated: Vec<String> = stated.collect();
+            let places = answer.board.print_noise.map(|sigma| format!("places of its points \u{b1} {} object units in each coordinate", three(sigma)));
+            let exact: Vec<&str> = [(&scale, "scale of the print"), (&places, "places of its points")].into_iter().filter(|(stated, _)| stated.is_none()).map(|(_, what)| what).collect();
+            let stated: Vec<String> = [scale, places].into_iter().flatten().collect();
             let stated = if stated.is_empty() { String::new() } else { format!(" Stated: {}.", stated.join("; ")) };
-            let exact = if board.exact.is_empty() { String::new() } else { format!(" Taken as exact: {}; lengths take their scale from it.", board.exact.join(", ")) };
-            format!("Board {}.{stated}{exact}", board.name)
+            let exact = if exact.is_empty() { String::new() } else { format!(" Taken as exact: {}.", exact.join(", ")) };
+            format!("Board {board}.{stated}{exact} Lengths take their scale from it.")
         }
         None if answer.counts.control_points == 0 => "No control: a free network; what scale it has comes of distances, if any.".into(),
         None => format!("{} control points; those without standard deviations in their file are taken as exact.", answer.counts.control_points),

@@ -110,7 +110,7 @@ fn how(paper: &mut Paper, y: f64, told: &Told<'_>) -> f64 {
     let (record, answer) = (&told.certificate.record, told.answer);
     let counts = &answer.counts;
     let object = match &record.board {
-        Some(board) => format!("board {}", board.name),
+        Some(board) => format!("board {board}"),
         None => format!("{} targets, {} of them control points", counts.targets, counts.control_points),
     };
     let mut y = fact(paper, y, "Object", &object);

@@ -118,6 +118,7 @@ fn doubts(paper: &mut Paper, mut y: f64, told: &Told<'_>) -> f64 {
         ("In doubt", told.doubts.iter().collect::<Vec<_>>()),
         ("Suspected", answer.suspected.iter().map(|one| &one.what).collect()),
         ("Not tested", answer.untested.iter().collect()),
+        ("No digest", told.certificate.record.without_digest.iter().collect()),
         ("To be known", answer.warnings.iter().collect()),
     ]
     .into_iter()

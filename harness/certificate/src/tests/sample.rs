@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::record::{BoardRecord, CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, PlaceRecord, RECORD, Record, Role};
+use crate::record::{CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, PlaceRecord, RECORD, Record, Role};
 use crate::{digest_of, line};
 
 /// The answer, with so many doubts.
@@ -81,17 +81,17 @@ pub fn sample(doubts: usize, photographs: usize) -> (Certificate, String) {
         last: Some("2026-05-01 12:09:41".into()),
         ..Equipment::default()
     };
-    let exact = ["scale of the print", "places of its points"].map(str::to_owned).to_vec();
     let record = Record {
         certificate: RECORD,
         calibench: "0.2.0".into(),
         calibration: answer(doubts),
         groups: Some(12),
         method: Some("parametric_corner:window=15".into()),
-        board: Some(BoardRecord { name: "chessboard:9x6:25".into(), stated: Vec::new(), exact }),
+        board: Some("chessboard:9x6:25".into()),
         cameras: vec![CameraRecord { equipment: vec![equipment], frame: Some(frame()) }],
         tasks: Vec::new(),
         files,
+        without_digest: Vec::new(),
     };
     let fields = Fields { by: Some("A. N. Other, Laboratory of Photogrammetry".into()), place: Some("Somewhere".into()), ..Fields::default() };
     (Certificate { fields, camera: 0, record }, list)
