@@ -154,7 +154,9 @@ fn board(record: &Record, answer: &Answer) -> Vec<Source> {
         None => row("Board: scale of the print", "taken as exact".into(), "-", "0", Contribution::None),
     };
     let places = match answer.board.print_noise {
-        Some(sigma) => row("Board: places of its points", format!("{} object units, stated", three(sigma)), "B, normal", "-", Contribution::Within),
+        Some(sigma) => {
+            row("Board: places of its points", format!("{} object units, stated", three(sigma)), "B, normal", "-", Contribution::Within)
+        }
         None => row("Board: places of its points", "taken as exact".into(), "-", "-", Contribution::NotEvaluated),
     };
     [scale, places].into_iter().chain(flatness("Board: flatness")).collect()

@@ -23,7 +23,9 @@ pub enum CertificateError {
         why: String,
     },
     /// A record of another version.
-    #[error("{RECORD_FILE}: version {0} of the record; this program reads version {RECORD}: take the program that wrote it, or calibrate again")]
+    #[error(
+        "{RECORD_FILE}: version {0} of the record; this program reads version {RECORD}: take the program that wrote it, or calibrate again"
+    )]
     Version(u32),
     /// An answer that lacks what a certificate says.
     #[error("{RECORD_FILE}: the answer of `calibrate` in it cannot be read: {0}; calibrate again")]
@@ -40,7 +42,9 @@ pub enum CertificateError {
     #[error("no camera {0} in this calibration; there are {1}")]
     Camera(usize, usize),
     /// A document that no certificate is attached to as `certificate` writes it.
-    #[error("no certificate of calibench is attached as it was written; expected the file that `calibench certificate` wrote, not printed or saved anew by another program")]
+    #[error(
+        "no certificate of calibench is attached as it was written; expected the file that `calibench certificate` wrote, not printed or saved anew by another program"
+    )]
     NoCertificate,
 }
 
@@ -108,7 +112,8 @@ impl Sealed {
     /// As [`Self::certificate`]; an answer that cannot be read; a camera that is not there.
     pub fn certified(&self) -> Result<Certified, CertificateError> {
         let certificate = self.certificate()?;
-        let answer: Answer = serde_json::from_value(certificate.record.calibration.clone()).map_err(|error| CertificateError::Answer(error.to_string()))?;
+        let answer: Answer =
+            serde_json::from_value(certificate.record.calibration.clone()).map_err(|error| CertificateError::Answer(error.to_string()))?;
         if certificate.camera >= answer.cameras.len() {
             return Err(CertificateError::Camera(certificate.camera, answer.cameras.len()));
         }
@@ -121,8 +126,18 @@ impl Sealed {
         let identifier = format!("{digest} (SHA-256)");
         let about = About { title: title(!doubts.is_empty()), identifier: &identifier, program: &program };
         let attachments = [
-            Attachment { name: RECORD_FILE, about: "The record that the certificate is made of", kind: "application/json", content: self.record.as_bytes() },
-            Attachment { name: LIST_FILE, about: "SHA-256 of the files, as sha256sum checks them", kind: "text/plain", content: self.list.as_bytes() },
+            Attachment {
+                name: RECORD_FILE,
+                about: "The record that the certificate is made of",
+                kind: "application/json",
+                content: self.record.as_bytes(),
+            },
+            Attachment {
+                name: LIST_FILE,
+                about: "SHA-256 of the files, as sha256sum checks them",
+                kind: "text/plain",
+                content: self.list.as_bytes(),
+            },
         ];
         let pdf = document(paper, &about, &attachments);
         Ok(Certified { pdf, digest, doubts })
@@ -140,7 +155,14 @@ fn mixed(certificate: &Certificate) -> Vec<String> {
         (values.len() > 1).then(|| format!("the photographs are of several {what}, as EXIF says: {}", values.join(", ")))
     };
     [
-        several("cameras", all.iter().filter_map(|one| one.camera.clone().map(|name| format!("{name} {}", one.serial.as_deref().unwrap_or("")).trim().to_owned())).collect()),
+        several(
+            "cameras",
+            all.iter()
+                .filter_map(|one| {
+                    one.camera.clone().map(|name| format!("{name} {}", one.serial.as_deref().unwrap_or("")).trim().to_owned())
+                })
+                .collect(),
+        ),
         several("lenses", all.iter().filter_map(|one| one.lens.clone()).collect()),
         several("focal lengths", all.iter().filter_map(|one| one.focal_mm.map(|mm| format!("{mm} mm"))).collect()),
     ]

@@ -58,6 +58,9 @@ mod tests {
 
     #[test]
     fn three_digits_are_three() {
-        assert_eq!([0.012_345, 1.0, 999.6, 1e-9, 0.0, f64::NAN].map(three), ["0.0123", "1.00", "1000", "1.00\u{b7}10^-9", "0", "unbounded"]);
+        assert_eq!(
+            [0.012_345, 1.0, 999.6, 1e-9, 0.0, f64::NAN].map(three),
+            ["0.0123", "1.00", "1000", "1.00\u{b7}10^-9", "0", "unbounded"]
+        );
     }
 }

@@ -16,7 +16,8 @@ mod verify;
 pub use certified::{CertificateError, Certified, Sealed};
 pub use digest::{digest_of, digest_of_file, line};
 pub use record::{
-    CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, LIST_FILE, PlaceRecord, RECORD, RECORD_FILE, Record, Role, TaskFigure,
+    CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, LIST_FILE, PlaceRecord, RECORD, RECORD_FILE, Record, Role,
+    TaskFigure,
 };
 pub use verify::{Pages, Verified, attached, verify};
 

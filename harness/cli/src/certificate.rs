@@ -40,7 +40,10 @@ impl Certificate {
         match (&self.verify, self.folders.as_slice(), &self.output) {
             (Some(path), folders, _) => verified(path, folders),
             (None, [folder], Some(output)) => self.write(folder, output),
-            (None, folders, _) => Err(Failure::input(format!("{} folders; expected that of one report, and -o with the name of the certificate", folders.len()))),
+            (None, folders, _) => Err(Failure::input(format!(
+                "{} folders; expected that of one report, and -o with the name of the certificate",
+                folders.len()
+            ))),
         }
     }
 
@@ -56,7 +59,8 @@ impl Certificate {
         calibench_files::folder::intact(folder)?;
         let read = |path: &Path| bounded::text(path).map_err(|error| at(path, &error));
         let (text, list) = (read(&record)?, read(&list)?);
-        let record: Record = serde_json::from_str(&text).map_err(|error| Failure::input(format!("{}: {error}; calibrate again", record.display())))?;
+        let record: Record =
+            serde_json::from_str(&text).map_err(|error| Failure::input(format!("{}: {error}; calibrate again", record.display())))?;
         let camera = self.which(&record)?;
         if certify(&Certified { fields, camera, record }, &list, &output)? { Err(Failure::Doubt) } else { Ok(()) }
     }
@@ -67,7 +71,11 @@ impl Certificate {
         let names: Vec<String> = cameras.iter().filter_map(|camera| camera["name"].as_str().map(str::to_owned)).collect();
         match &self.camera {
             None if names.len() < 2 => Ok(0),
-            None => Err(Failure::input(format!("{} cameras, and a certificate is of one; expected --camera with one of {}", names.len(), few(&names)))),
+            None => Err(Failure::input(format!(
+                "{} cameras, and a certificate is of one; expected --camera with one of {}",
+                names.len(),
+                few(&names)
+            ))),
             Some(wanted) => {
                 let found = names.iter().position(|name| name == wanted);
                 found.ok_or_else(|| Failure::input(format!("--camera: no camera is called `{wanted}`; there are {}", few(&names))))
@@ -82,9 +90,11 @@ fn verified(path: &Path, folders: &[PathBuf]) -> Result<(), Failure> {
     file.by_ref().take(LARGEST).read_to_end(&mut pdf).map_err(|error| at(path, &error))?;
     let beside = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
     let usual = [PathBuf::from("."), beside];
-    let found = verify(&pdf, if folders.is_empty() { &usual } else { folders }).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+    let found = verify(&pdf, if folders.is_empty() { &usual[..] } else { folders })
+        .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
     print(&told(&found))?;
-    let is_same = found.changed.is_empty() && found.pages != Pages::Changed && found.found.as_ref().is_none_or(|digest| *digest == found.stated);
+    let is_same =
+        found.changed.is_empty() && found.pages != Pages::Changed && found.found.as_ref().is_none_or(|digest| *digest == found.stated);
     if !is_same {
         return Err(Failure::Gate);
     }
@@ -107,7 +117,9 @@ fn told(found: &Verified) -> String {
     text += &changed.iter().map(|path| format!("changed   {path}\n")).collect::<String>();
     let pages = match pages {
         Pages::Same => "those that the record gives, byte for byte".into(),
-        Pages::Added(bytes) => format!("as they were written, and {bytes} bytes behind them that another program added (a signature, remarks): look at them there"),
+        Pages::Added(bytes) => format!(
+            "as they were written, and {bytes} bytes behind them that another program added (a signature, remarks): look at them there"
+        ),
         Pages::Changed if calibench != env!("CARGO_PKG_VERSION") => {
             format!("not those that the record gives here; calibench {calibench} wrote them: let that version verify them")
         }

@@ -85,7 +85,11 @@ impl Lettering {
     pub fn write(self, pdf: &mut Pdf, font: Ref, next: &mut impl FnMut() -> Ref) {
         let Some(face) = &self.face else { return };
         let [descendant, descriptor, file, letters] = std::array::from_fn(|_| next());
-        pdf.type0_font(font).base_font(self.font.name()).encoding_predefined(Name(b"Identity-H")).descendant_font(descendant).to_unicode(letters);
+        pdf.type0_font(font)
+            .base_font(self.font.name())
+            .encoding_predefined(Name(b"Identity-H"))
+            .descendant_font(descendant)
+            .to_unicode(letters);
         let mut cid = pdf.cid_font(descendant);
         cid.subtype(CidFontType::Type2)
             .base_font(self.font.name())

@@ -1,7 +1,7 @@
 //! The first page: what was calibrated, how, and the parameters.
 
 use super::table::{self, Column, Side};
-use super::{board, DOUBT, LEFT, NOTE, PALE, RIGHT, RULE, SMALL, TEXT, TITLE, Told, bounded, fact, number, paragraph, section, title};
+use super::{DOUBT, LEFT, NOTE, PALE, RIGHT, RULE, SMALL, TEXT, TITLE, Told, board, bounded, fact, number, paragraph, section, title};
 use crate::answer::{Calibrated, Parameter};
 use crate::digits::{three, with_uncertainty};
 use crate::document::{GREY, Paper, SIZE, Style};
@@ -46,7 +46,11 @@ fn doubts(paper: &mut Paper, doubts: &[String]) -> f64 {
     let height = 19.0 + 10.5 * (lines + usize::from(more > 0)) as f64;
     paper.fill([LEFT, 90.0], [RIGHT - LEFT, height], PALE);
     paper.fill([LEFT, 90.0], [2.0, height], DOUBT);
-    paper.write([LEFT + 10.0, 102.0], Style::bold(8.5).coloured(DOUBT), "This calibration is in doubt. Do not rely on it before the cause is known.");
+    paper.write(
+        [LEFT + 10.0, 102.0],
+        Style::bold(8.5).coloured(DOUBT),
+        "This calibration is in doubt. Do not rely on it before the cause is known.",
+    );
     let mut y = 113.0;
     for doubt in shown {
         y = bounded(paper, [LEFT + 10.0, y], (style, width, 10.5), doubt, 2);
@@ -63,7 +67,12 @@ fn what(paper: &mut Paper, y: f64, told: &Told<'_>, calibrated: &Calibrated) -> 
     let name = if told.answer.cameras.len() > 1 { format!("{} \u{2014} ", calibrated.name) } else { String::new() };
     let camera = said(fields.camera.as_deref(), equipment, |one| with_serial(one.camera.as_deref(), one.serial.as_deref()));
     let mut y = fact(paper, y, "Camera", &format!("{name}{camera}"));
-    y = fact(paper, y, "Lens", &said(fields.lens.as_deref(), equipment, |one| with_serial(one.lens.as_deref(), one.lens_serial.as_deref())));
+    y = fact(
+        paper,
+        y,
+        "Lens",
+        &said(fields.lens.as_deref(), equipment, |one| with_serial(one.lens.as_deref(), one.lens_serial.as_deref())),
+    );
     let setting = |one: &Equipment| {
         let focal = one.focal_mm.map(|mm| format!("{mm} mm"));
         let aperture = one.f_number.map(|number| format!("f/{number}"));
@@ -115,7 +124,11 @@ fn how(paper: &mut Paper, y: f64, told: &Told<'_>) -> f64 {
     };
     let mut y = fact(paper, y, "Object", &object);
     let photographs = record.files.iter().filter(|file| file.role == Role::Photograph).count();
-    let given = if photographs > 0 { format!("{photographs} photographs given, {} used", counts.images) } else { format!("{} images", counts.images) };
+    let given = if photographs > 0 {
+        format!("{photographs} photographs given, {} used", counts.images)
+    } else {
+        format!("{} images", counts.images)
+    };
     let method = record.method.as_ref().map_or(String::new(), |method| format!(", measured by {method}"));
     y = fact(paper, y, "Image points", &format!("{} in {given}{method}; {} not in full", counts.image_points, counts.not_in_full));
     let redundancy = format!("{} observations, {} unknowns, redundancy {}", counts.observations, counts.unknowns, counts.redundancy);
@@ -146,7 +159,8 @@ fn parameters(paper: &mut Paper, y: f64, told: &Told<'_>, calibrated: &Calibrate
     // What was adjusted comes before what is fixed, where there is not room for all.
     let space = SIGNED - 118.0 - begin;
     let room = MOST_PARAMETERS.min((space / LEAST_ROW).max(1.0) as usize);
-    let shown: Vec<&Parameter> = if all.len() > room { all.iter().filter(|one| one.sigma.is_some()).take(room).collect() } else { all.iter().collect() };
+    let shown: Vec<&Parameter> =
+        if all.len() > room { all.iter().filter(|one| one.sigma.is_some()).take(room).collect() } else { all.iter().collect() };
     let height = (space / shown.len().max(1) as f64).clamp(LEAST_ROW, 12.0);
     let style = if height < 11.0 { SMALL } else { Style::plain(8.0) };
     let mut y = table::head(paper, begin, &columns, ([LEFT, RIGHT], height));

@@ -50,7 +50,9 @@ fn class(bounds: &[f64], sigma: f64) -> usize {
 /// The map at the left, its places at the right; returns where the next begins.
 pub(super) fn write(paper: &mut Paper, y: f64, told: &Told<'_>, size: &Size) -> f64 {
     let frame = told.certificate.record.cameras.get(told.certificate.camera).and_then(|camera| camera.frame.as_ref());
-    let Some(frame) = frame.filter(|frame| frame.grid.iter().product::<usize>() == frame.sigma_px.len() && frame.measured.len() == frame.sigma_px.len()) else {
+    let Some(frame) =
+        frame.filter(|frame| frame.grid.iter().product::<usize>() == frame.sigma_px.len() && frame.measured.len() == frame.sigma_px.len())
+    else {
         paper.write([LEFT, y], SMALL, "The interior orientation was not adjusted: there is no map.");
         return y + 12.0;
     };
@@ -97,7 +99,9 @@ fn map(paper: &mut Paper, at: [f64; 2], drawn: [f64; 2], frame: &FrameRecord, bo
     }
     let [left, top] = at;
     let (right, bottom) = (left + drawn[0], top + drawn[1]);
-    for (from, to) in [([left, top], [right, top]), ([right, top], [right, bottom]), ([right, bottom], [left, bottom]), ([left, bottom], [left, top])] {
+    for (from, to) in
+        [([left, top], [right, top]), ([right, top], [right, bottom]), ([right, bottom], [left, bottom]), ([left, bottom], [left, top])]
+    {
         paper.line(from, to, (0.6, GREY));
     }
 }
@@ -108,7 +112,11 @@ fn legend(paper: &mut Paper, [x, y]: [f64; 2], bounds: &[f64]) {
         let top = y + 11.0 + 11.0 * index as f64;
         paper.fill([x, top], [10.0, 8.5], SHADES[index]);
         let is_last = index + 1 == bounds.len() && index + 1 == SHADES.len();
-        let words = if is_last { format!("> {}", bounds.get(index.saturating_sub(1)).map_or(0.0, |below| *below)) } else { format!("\u{2264} {bound}") };
+        let words = if is_last {
+            format!("> {}", bounds.get(index.saturating_sub(1)).map_or(0.0, |below| *below))
+        } else {
+            format!("\u{2264} {bound}")
+        };
         paper.write([x + 14.0, top + 7.0], SMALL, &words);
     }
 }
@@ -136,7 +144,11 @@ fn places(paper: &mut Paper, y: f64, told: &Told<'_>, frame: &FrameRecord) -> f6
         y = table::row(paper, y, &columns, (SMALL, table::ROW), &cells);
     }
     if frame.places.iter().any(|place| !place.measured) {
-        paper.write([left, y], Style { size: 6.5, ..NOTE }, "* outside of the measured points (line in the map): extrapolated by the model alone");
+        paper.write(
+            [left, y],
+            Style { size: 6.5, ..NOTE },
+            "* outside of the measured points (line in the map): extrapolated by the model alone",
+        );
         y += table::ROW;
     }
     y

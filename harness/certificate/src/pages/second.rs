@@ -63,7 +63,10 @@ fn budget(paper: &mut Paper, y: f64, budget: &Budget) -> f64 {
     let known = |px: Option<f64>| px.map_or("not known".into(), |px| format!("{} px", three(px)));
     let rows = [
         (format!("Combined standard uncertainty, effective degrees of freedom {freedom}"), known(budget.combined_px)),
-        (format!("Expanded uncertainty U, k = {:.2}: at least 95 % of errors are within it, as far as the rows above tell", budget.k), known(budget.expanded_px())),
+        (
+            format!("Expanded uncertainty U, k = {:.2}: at least 95 % of errors are within it, as far as the rows above tell", budget.k),
+            known(budget.expanded_px()),
+        ),
     ];
     for (name, value) in rows {
         paper.write([LEFT, y + 1.5], strong, &name);
@@ -87,7 +90,13 @@ fn tasks(paper: &mut Paper, y: f64, told: &Told<'_>) -> f64 {
         .chain(lengths.iter().map(|length| {
             let (value, u) = with_uncertainty(length.length, length.sigma);
             let measured = length.measured.map_or("asked for".to_owned(), |measured| format!("measured {measured}"));
-            vec![format!("length {} to {}", length.targets[0], length.targets[1]), value, u, with_uncertainty(0.0, k * length.sigma).1, measured]
+            vec![
+                format!("length {} to {}", length.targets[0], length.targets[1]),
+                value,
+                u,
+                with_uncertainty(0.0, k * length.sigma).1,
+                measured,
+            ]
         }))
         .collect();
     if rows.is_empty() {
@@ -154,7 +163,8 @@ fn files(paper: &mut Paper, mut y: f64, told: &Told<'_>) {
         return;
     }
     if !all_fit {
-        let over: String = entries.iter().zip(&lines).filter(|(entry, _)| entry.role == Role::Photograph).map(|(_, line)| format!("{line}\n")).collect();
+        let over: String =
+            entries.iter().zip(&lines).filter(|(entry, _)| entry.role == Role::Photograph).map(|(_, line)| format!("{line}\n")).collect();
         let what = format!("{photographs} photographs; SHA-256 of the list of their digests:");
         paper.write([LEFT, y], style, &what);
         paper.write([DIGESTS, y], style, &digest_of(over.as_bytes()));

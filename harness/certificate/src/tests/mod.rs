@@ -31,7 +31,9 @@ fn the_same_record_gives_the_same_bytes_and_another_one_others() {
 
 #[test]
 fn a_doubtful_calibration_says_so_in_the_title() {
-    for (doubts, title) in [(0, "<rdf:li xml:lang=\"x-default\">Calibration certificate</rdf:li>"), (1, ">Calibration certificate: in doubt</rdf:li>")] {
+    for (doubts, title) in
+        [(0, "<rdf:li xml:lang=\"x-default\">Calibration certificate</rdf:li>"), (1, ">Calibration certificate: in doubt</rdf:li>")]
+    {
         let (certificate, list) = sample(doubts, 3);
         assert!(holds(&pdf(&certificate, &list), title), "{title}");
     }
@@ -53,7 +55,11 @@ fn record_and_list_are_attached_and_their_digest_is_stated() {
     assert_eq!(attached(&made.pdf).unwrap(), sealed);
     assert_eq!(made.digest, digest_of(format!("{}{list}", sealed.record).as_bytes()));
     assert!(holds(&made.pdf, &format!("<dc:identifier>{} (SHA-256)", made.digest)));
-    assert!(holds(&made.pdf, "<pdfaid:part>3</pdfaid:part>") && holds(&made.pdf, "/AFRelationship /Source") && holds(&made.pdf, "/S /GTS_PDFA1"));
+    assert!(
+        holds(&made.pdf, "<pdfaid:part>3</pdfaid:part>")
+            && holds(&made.pdf, "/AFRelationship /Source")
+            && holds(&made.pdf, "/S /GTS_PDFA1")
+    );
 }
 
 /// Files, a certificate of them, and where they are.
@@ -176,6 +182,7 @@ fn a_calibration_that_knows_little_has_a_certificate_too() {
     certificate.record.cameras[0].frame = None;
     assert!(!pdf(&certificate, &list).is_empty());
     // A grid that is not what it says is no map, and no panic.
-    certificate.record.cameras[0].frame = Some(crate::FrameRecord { grid: [3, 3], sigma_px: vec![None], measured: Vec::new(), places: Vec::new() });
+    certificate.record.cameras[0].frame =
+        Some(crate::FrameRecord { grid: [3, 3], sigma_px: vec![None], measured: Vec::new(), places: Vec::new() });
     assert!(!pdf(&certificate, &list).is_empty());
 }

@@ -17,7 +17,9 @@ fn answer(doubts: usize) -> Value {
     let rho = |i: usize, j: usize| if i == j { 1.0 } else { [0.987, -0.12, 0.07, 0.31][(i + j) % 4] };
     let covariance: Vec<Vec<f64>> = (0..8).map(|i| (0..8).map(|j| rho(i, j) * sigmas[i] * sigmas[j]).collect()).collect();
     let solved: Vec<Value> = (0..8)
-        .map(|i| json!({"parameter": names[i], "sigma": sigmas[i], "sigma_by_images": sigmas[i] * 1.4, "t": null, "p": null, "held": false}))
+        .map(
+            |i| json!({"parameter": names[i], "sigma": sigmas[i], "sigma_by_images": sigmas[i] * 1.4, "t": null, "p": null, "held": false}),
+        )
         .collect();
     let long = "rows of an image were exposed one after the other, or camera or board moved meanwhile: residuals within an image belong together; photograph what \
                 stands still, with a tripod, or take a global shutter";
@@ -45,16 +47,20 @@ fn frame() -> FrameRecord {
     let grid = [48, 36];
     let sigma = |x: f64, y: f64| 0.05 + 0.9 * (x * x + y * y).powi(2);
     let at = |k: usize| (2.0 * (k % 48) as f64 / 47.0 - 1.0, 2.0 * (k / 48) as f64 / 35.0 - 1.0);
-    let names = ["upper left corner", "upper side", "upper right corner", "left side", "middle", "right side", "lower left corner", "lower side", "lower right corner"];
+    let names = [
+        "upper left corner",
+        "upper side",
+        "upper right corner",
+        "left side",
+        "middle",
+        "right side",
+        "lower left corner",
+        "lower side",
+        "lower right corner",
+    ];
     let place = |(i, name): (usize, &&str)| {
         let (x, y) = ((i % 3) as f64, (i / 3) as f64);
-        PlaceRecord {
-            name: (*name).into(),
-            x: 639.5 * x,
-            y: 479.5 * y,
-            sigma_px: Some(sigma(x - 1.0, y - 1.0)),
-            measured: i == 4,
-        }
+        PlaceRecord { name: (*name).into(), x: 639.5 * x, y: 479.5 * y, sigma_px: Some(sigma(x - 1.0, y - 1.0)), measured: i == 4 }
     };
     FrameRecord {
         grid,
@@ -67,8 +73,15 @@ fn frame() -> FrameRecord {
 /// A certificate with so many doubts and photographs, and the list of digests.
 pub fn sample(doubts: usize, photographs: usize) -> (Certificate, String) {
     let file = |role, path: String| FileEntry { role, path, bytes: 2_345_678 };
-    let name = |i: usize| if i % 7 == 3 { format!("photographs/a very long name/of a folder that/somebody made/in a hurry/IMG_{i:04}.JPG") } else { format!("photographs/IMG_{i:04}.JPG") };
-    let files: Vec<FileEntry> = (0..photographs).map(|i| file(Role::Photograph, name(i))).chain([file(Role::Camera, "camera.yaml".into())]).collect();
+    let name = |i: usize| {
+        if i % 7 == 3 {
+            format!("photographs/a very long name/of a folder that/somebody made/in a hurry/IMG_{i:04}.JPG")
+        } else {
+            format!("photographs/IMG_{i:04}.JPG")
+        }
+    };
+    let files: Vec<FileEntry> =
+        (0..photographs).map(|i| file(Role::Photograph, name(i))).chain([file(Role::Camera, "camera.yaml".into())]).collect();
     let list = files.iter().map(|file| line(&digest_of(file.path.as_bytes()), &file.path)).collect();
     let equipment = Equipment {
         photographs,
@@ -93,6 +106,7 @@ pub fn sample(doubts: usize, photographs: usize) -> (Certificate, String) {
         files,
         without_digest: Vec::new(),
     };
-    let fields = Fields { by: Some("A. N. Other, Laboratory of Photogrammetry".into()), place: Some("Somewhere".into()), ..Fields::default() };
+    let fields =
+        Fields { by: Some("A. N. Other, Laboratory of Photogrammetry".into()), place: Some("Somewhere".into()), ..Fields::default() };
     (Certificate { fields, camera: 0, record }, list)
 }

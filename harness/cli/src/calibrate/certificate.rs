@@ -1,12 +1,13 @@
 //! What a certificate is made of: the calibration, its files with their digests, what the photographs say of the camera.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
 use calibench_calibrate::{Calibration, Suspected};
 use calibench_certificate::{
-    CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, LIST_FILE, PlaceRecord, RECORD, RECORD_FILE, Record, Role, Sealed, digest_of_file, line,
+    CameraRecord, Certificate, Equipment, Fields, FileEntry, FrameRecord, LIST_FILE, PlaceRecord, RECORD, RECORD_FILE, Record, Role,
+    Sealed, digest_of_file, line,
 };
 use calibench_files::{Inputs, NewFolder, OutputFile, at};
 use calibench_images::picture::said;
@@ -64,7 +65,9 @@ impl Said {
     /// A text that has no room.
     pub fn fields(&self) -> Result<Fields, Failure> {
         let all = [("--by", &self.by), ("--place", &self.place), ("--date", &self.date), ("--body", &self.body), ("--lens", &self.lens)];
-        if let Some((name, _)) = all.iter().find(|(_, text)| text.as_ref().is_some_and(|text| text.chars().count() > LONGEST || text.trim().is_empty())) {
+        if let Some((name, _)) =
+            all.iter().find(|(_, text)| text.as_ref().is_some_and(|text| text.chars().count() > LONGEST || text.trim().is_empty()))
+        {
             return Err(Failure::input(format!("{name}: expected a text of 1 to {LONGEST} letters")));
         }
         let Self { by, place, date, body, lens } = self.clone();
@@ -78,7 +81,11 @@ impl Said {
     pub fn without_certificate(&self) -> Result<(), Failure> {
         let all = [("--by", &self.by), ("--place", &self.place), ("--date", &self.date), ("--body", &self.body), ("--lens", &self.lens)];
         let given: Vec<&str> = all.iter().filter(|(_, text)| text.is_some()).map(|(name, _)| *name).collect();
-        if given.is_empty() { Ok(()) } else { Err(Failure::input(format!("{}: for a certificate; name it with --certificate", given.join(", ")))) }
+        if given.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::input(format!("{}: for a certificate; name it with --certificate", given.join(", "))))
+        }
     }
 }
 
@@ -166,7 +173,8 @@ impl Recorded {
             frame: FrameUncertainty::of(calibration, camera).map(|found| frame(&found)),
         });
         let roles = made.photos.0.iter().map(|path| (Role::Photograph, path));
-        let roles = roles.chain(made.inputs.iter().map(|path| (Role::Input, path))).chain(made.camera.iter().map(|path| (Role::Camera, path)));
+        let roles =
+            roles.chain(made.inputs.iter().map(|path| (Role::Input, path))).chain(made.camera.iter().map(|path| (Role::Camera, path)));
         let (all, pipes): (Vec<_>, Vec<_>) = roles.partition(|(_, path)| path.is_file());
         let paths: Vec<&Path> = all.iter().map(|(_, path)| path.as_path()).collect();
         let digests = paths.par_iter().map(|path| digest_of_file(path).map_err(|error| at(path, &error))).collect::<Result<Vec<_>, _>>()?;
@@ -237,9 +245,9 @@ fn shown(paths: &[&Path]) -> Vec<String> {
 /// What the photographs of a camera say of it, those that say the same counted. One that cannot be read says nothing.
 fn equipment(calibration: &Calibration<'_>, camera: usize, photos: &[Photo]) -> Vec<Equipment> {
     let images = &calibration.prepared.survey.images;
-    let own: BTreeMap<&str, ()> =
-        images.iter().enumerate().filter(|(image, _)| calibration.owner(*image) == camera).map(|(_, name)| (name.as_str(), ())).collect();
-    let mut paths: Vec<&PathBuf> = photos.iter().filter(|(name, ..)| own.contains_key(name.as_str())).map(|(_, path, _)| path).collect();
+    let own: BTreeSet<&str> =
+        images.iter().enumerate().filter(|(image, _)| calibration.owner(*image) == camera).map(|(_, name)| name.as_str()).collect();
+    let mut paths: Vec<&PathBuf> = photos.iter().filter(|(name, ..)| own.contains(name.as_str())).map(|(_, path, _)| path).collect();
     paths.dedup();
     let found: Vec<_> = paths.par_iter().map(|path| said(path).unwrap_or_default()).collect();
     let mut all: Vec<Equipment> = Vec::new();

@@ -132,7 +132,10 @@ mod tests {
             text(LENS_SERIAL, ""),
         ];
         let found = Said::of(&Directories { main, exif, gps: Vec::new() });
-        assert_eq!([found.camera.as_deref(), found.serial.as_deref(), found.lens.as_deref()], [Some("Canon EOS 1100D"), Some("123"), Some("EF-S18-55mm")]);
+        assert_eq!(
+            [found.camera.as_deref(), found.serial.as_deref(), found.lens.as_deref()],
+            [Some("Canon EOS 1100D"), Some("123"), Some("EF-S18-55mm")]
+        );
         assert_eq!((found.focal_mm, found.f_number, found.lens_serial), (Some(18.0), Some(5.6), None));
         assert_eq!(found.taken.as_deref(), Some("2026-05-01 12:00:00"));
         let other = Directories { main: vec![text(MAKER, "SONY"), text(MODEL, "ILCE-7")], ..Directories::default() };
@@ -141,7 +144,12 @@ mod tests {
 
     #[test]
     fn what_says_nothing_is_nothing() {
-        let exif = vec![ratio(FOCAL, [0, 0]), ratio(F_NUMBER, [0, 1]), text(TAKEN, "0000:00:00 00:00:00"), Entry { tag: BODY_SERIAL, kind: 2, value: vec![] }];
+        let exif = vec![
+            ratio(FOCAL, [0, 0]),
+            ratio(F_NUMBER, [0, 1]),
+            text(TAKEN, "0000:00:00 00:00:00"),
+            Entry { tag: BODY_SERIAL, kind: 2, value: vec![] },
+        ];
         assert_eq!(Said::of(&Directories { exif, ..Directories::default() }), Said::default());
     }
 }
