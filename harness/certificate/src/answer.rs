@@ -105,6 +105,7 @@ pub struct Solved {
 }
 
 #[derive(Deserialize)]
+#[expect(clippy::struct_field_names, reason = "they are the keys of the answer")]
 pub struct Length {
     pub targets: [String; 2],
     pub length: f64,

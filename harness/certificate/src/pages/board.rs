@@ -38,12 +38,12 @@ pub(super) fn write(paper: &mut Paper, y: f64, told: &Told<'_>) -> f64 {
         };
         [0, 1, 2].map(one).join(", ")
     });
-    let p = answer.board.p.map_or(String::new(), |p| format!(" (p {p:.3})"));
+    let p = answer.board.p.map_or(String::new(), |p| if p < 0.001 { " (p < 0.001)".into() } else { format!(" (p {p:.3})") });
     match (answer.board.shape.as_str(), bend) {
         ("flat", Some(bend)) => words += &format!(" Flatness: a bend of {bend} (object units) is not told from none{p}; taken as flat."),
         ("bent", Some(bend)) => words += &format!(" Bent by {bend} (object units){p}: adjusted with the camera."),
         ("untested", _) => {
-            words += &format!(" Flatness: not tested{}.", answer.board.why.as_ref().map_or(String::new(), |why| format!(": {why}")))
+            words += &format!(" Flatness: not tested{}.", answer.board.why.as_ref().map_or(String::new(), |why| format!(": {why}")));
         }
         _ => {}
     }

@@ -15,6 +15,8 @@ const FILES: f64 = BOTTOM - 84.0;
 const LAST: f64 = BOTTOM - 10.0;
 /// Between sections, points.
 const GAP: f64 = 10.0;
+/// Where what is in doubt begins, behind its kind.
+const INDENTED: f64 = 54.0;
 
 pub(super) fn write(paper: &mut Paper, told: &Told<'_>) {
     let Some(calibrated) = told.answer.cameras.get(told.certificate.camera) else { return };
@@ -88,15 +90,14 @@ fn tasks(paper: &mut Paper, y: f64, told: &Told<'_>) -> f64 {
     });
     let rows: Vec<Vec<String>> = rows
         .chain(lengths.iter().map(|length| {
-            let (value, u) = with_uncertainty(length.length, length.sigma);
+            let what = format!("length {} to {}", length.targets[0], length.targets[1]);
             let measured = length.measured.map_or("asked for".to_owned(), |measured| format!("measured {measured}"));
-            vec![
-                format!("length {} to {}", length.targets[0], length.targets[1]),
-                value,
-                u,
-                with_uncertainty(0.0, k * length.sigma).1,
-                measured,
-            ]
+            // Between points that are held nothing is adjusted.
+            if length.sigma <= 0.0 {
+                return vec![what, format!("{:.6}", length.length), "exact".into(), "-".into(), "taken as exact".into()];
+            }
+            let (value, u) = with_uncertainty(length.length, length.sigma);
+            vec![what, value, u, with_uncertainty(0.0, k * length.sigma).1, measured]
         }))
         .collect();
     if rows.is_empty() {
@@ -136,8 +137,7 @@ fn doubts(paper: &mut Paper, mut y: f64, told: &Told<'_>) -> f64 {
     if all.is_empty() {
         return paragraph(paper, y, SMALL, "Nothing: every check was made and found no doubt.", 1);
     }
-    const INDENT: f64 = 54.0;
-    let width = RIGHT - LEFT - INDENT;
+    let width = RIGHT - LEFT - INDENTED;
     for (index, (kind, words)) in all.iter().enumerate() {
         let lines = paper.lines(words, SMALL, width).len().min(3);
         let is_last = index + 1 == all.len();
@@ -145,7 +145,7 @@ fn doubts(paper: &mut Paper, mut y: f64, told: &Told<'_>) -> f64 {
             return paragraph(paper, y, Style::bold(7.0), &format!("and {} more in the attached record", all.len() - index), 1);
         }
         paper.write([LEFT, y], if *kind == "In doubt" { Style::bold(7.0) } else { NOTE }, kind);
-        y = super::bounded(paper, [LEFT + INDENT, y], (SMALL, width, 9.1), words, 3);
+        y = super::bounded(paper, [LEFT + INDENTED, y], (SMALL, width, 9.1), words, 3);
     }
     y
 }

@@ -8,7 +8,7 @@ use crate::{digest_of, line};
 /// The answer, with so many doubts.
 fn answer(doubts: usize) -> Value {
     let names = ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"];
-    let values = [1213.482_71, 1213.517_09, 639.128_3, 478.902_4, -0.214_38, 0.083_12, 0.000_312, -0.000_118];
+    let values = [1_213.482_71, 1_213.517_09, 639.128_3, 478.902_4, -0.214_38, 0.083_12, 0.000_312, -0.000_118];
     let sigmas = [0.412, 0.398, 0.287, 0.305, 0.0011, 0.0043, 0.000_081, 0.000_078];
     let parameters: Vec<Value> = (0..8)
         .map(|i| json!({"name": names[i], "value": values[i], "unit": if i < 4 { "px" } else { "" }, "sigma": sigmas[i]}))
