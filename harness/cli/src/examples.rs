@@ -107,6 +107,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
                 "calibench calibrate --points points.csv --distances bars.csv --size 8688x5792 --length 6,8",
                 "from points without coordinates, and scale bars",
             ),
+            ("calibench calibrate photos --board 9x6:25 -o camera.yaml --certificate camera.pdf", "with a certificate"),
             ("calibench calibrate a.jpg b.jpg --board aprilgrid:6x6:0.088:0.3 --json", "the answer for a program"),
             (
                 "calibench calibrate *.png --board 9x6:25 --rig left,right --sync left*.png=right*.png -o rig",
@@ -131,6 +132,13 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench accept --lengths lengths.csv --limit 0.02,1e-5 --unit mm --plot errors.png", "after VDI/VDE 2634-1"),
             ("calibench accept --lengths bars.csv --measured xyz.csv --limit 0.05 --scale scale.csv", "from measured points"),
             ("calibench accept --check-points survey.csv --measured xyz.csv --vertical 0.1 --json", "after ASPRS 2023"),
+        ],
+    ),
+    (
+        "certificate",
+        &[
+            ("calibench certificate calibrated -o certificate.pdf --by me --place here", "of a folder that `calibrate --report` wrote"),
+            ("calibench certificate --verify certificate.pdf", "whether files and pages are as they were"),
         ],
     ),
     (

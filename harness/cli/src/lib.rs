@@ -12,6 +12,7 @@ mod board;
 mod calibrate;
 mod camera;
 mod camera_files;
+mod certificate;
 mod check;
 mod confined;
 mod context;
@@ -148,6 +149,8 @@ enum Command {
     Orient(orient::Orient),
     /// Say whether measuring keeps what is specified, by lengths or check points
     Accept(Box<accept::Accept>),
+    /// Write the certificate of a calibration as PDF, or verify one against its files
+    Certificate(Box<certificate::Certificate>),
     /// Compare whole calibration systems on rendered photographs, class by class
     League(league::League),
     /// Convert a camera file to the format of another tool
@@ -252,6 +255,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Intersect(intersect) => intersect.run(&context),
         Command::Orient(orient) => orient.run(&context),
         Command::Accept(accept) => accept.run(),
+        Command::Certificate(certificate) => certificate.run(),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

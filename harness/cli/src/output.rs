@@ -38,6 +38,11 @@ pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile,
     file(option, path, ("a picture", &PICTURES), inputs)
 }
 
+/// A document.
+pub fn document(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    file(option, path, ("a certificate", &["pdf"]), inputs)
+}
+
 /// A page.
 pub fn page(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
     file(option, path, ("a page", &["html", "htm"]), inputs)

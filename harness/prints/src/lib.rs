@@ -1,9 +1,11 @@
-//! Testfields for the printer: their sheets at true scale, as SVG and as PDF.
+//! Testfields for the printer: their sheets at true scale, as SVG and as PDF; and what every PDF is made of, letters and streams.
 //!
 //! What is printed is what is rendered: every outline as it is, print noise included; a bend is the user's to avoid. The lightest level of a sheet is left
 //! white and the darkest is printed black, what lies between in proportion to its reflectance. A bar of 100 mm shows whether the printer kept the scale.
 
+mod deflated;
 mod layout;
+mod lettering;
 mod pdf;
 mod svg;
 
@@ -13,7 +15,9 @@ use calibench_files::folder::NewFolder;
 use calibench_model::Testfield;
 use thiserror::Error;
 
+pub use deflated::deflated;
 pub use layout::{Paper, Sheet, sheets};
+pub use lettering::{Font, Lettering};
 pub use pdf::pdf;
 pub use svg::svg;
 

@@ -29,11 +29,13 @@ use crate::failure::Failure;
 
 mod camera_file;
 mod cameras;
+pub mod certificate;
 mod photographs;
 mod reconstruction;
 mod rig;
 
 use cameras::Cameras;
+use certificate::Asked;
 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -120,6 +122,11 @@ pub struct Calibrate {
     /// Folder for a report with pictures and tables; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    /// The certificate of the camera as PDF: parameters, uncertainty budget, map, digests of all files
+    #[arg(long, value_name = "PDF")]
+    certificate: Option<PathBuf>,
+    #[command(flatten)]
+    said: certificate::Said,
     /// The network as a mesh (PLY) for other viewers: stations, object points and their error ellipsoids
     #[arg(long, value_name = "PLY")]
     scene: Option<PathBuf>,
@@ -132,6 +139,7 @@ struct Outputs {
     camera: Option<OutputFile>,
     scene: Option<OutputFile>,
     report: Option<OutputFolder>,
+    certificate: Option<Asked>,
 }
 
 /// What is calibrated from.
@@ -185,8 +193,8 @@ impl Calibrate {
             // What one place refuses is not lost for the others.
             let told = self.tell(calibration, &doubts, &suspects);
             let delivered = self.deliver(calibration, (&photos, reading, &doubts), &suspects, &outputs);
-            told.and(delivered)?;
-            if in_doubt { Err(Failure::Doubt) } else { Ok(()) }
+            let is_certified_in_doubt = told.and(delivered)?;
+            if in_doubt || is_certified_in_doubt { Err(Failure::Doubt) } else { Ok(()) }
         })
         .map_err(explained)?
     }
@@ -195,7 +203,8 @@ impl Calibrate {
         let report = self.report.as_deref().map(|path| output::folder("--report", path, inputs, ("calibrate", None))).transpose()?;
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, inputs)).transpose()?;
-        Ok(Outputs { camera, scene, report })
+        let certificate = self.certified(inputs)?;
+        Ok(Outputs { camera, scene, report, certificate })
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
@@ -287,16 +296,24 @@ impl Calibrate {
         (photos, reading, doubts): (&[Photo], Reading, &[String]),
         suspects: &[Suspected],
         outputs: &Outputs,
-    ) -> Result<(), Failure> {
+    ) -> Result<bool, Failure> {
+        let (photos_measured, found) = (photos, doubts);
         let doubts: Vec<String> = doubts.iter().cloned().chain(suspects.iter().map(Suspected::words)).collect();
         let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path(), reading)).collect();
         let camera = outputs.camera.as_ref().map_or(Ok(()), |output| camera_file::write(output, calibration, self.to.as_deref()));
         let scene = outputs.scene.as_ref().map_or(Ok(()), |output| output.write(|file| file.write_all(scene_ply(calibration).as_bytes())));
-        let report = |folder: &OutputFolder| folder.replace(|folder| write_report(calibration, &photos, &doubts, folder));
+        let recorded = self.recorded(calibration, (photos_measured, found, suspects), outputs);
+        let report = |folder: &OutputFolder| {
+            folder.replace(|folder| {
+                write_report(calibration, &photos, &doubts, folder)?;
+                recorded.as_ref().ok().and_then(Option::as_ref).map_or(Ok(()), |recorded| recorded.put(folder))
+            })
+        };
         let report = outputs.report.as_ref().map_or(Ok(()), report);
         camera?;
         scene?;
-        Ok(report?)
+        report?;
+        recorded?.zip(outputs.certificate.as_ref()).map_or(Ok(false), |(recorded, (output, fields))| recorded.write(fields, output))
     }
 }
 

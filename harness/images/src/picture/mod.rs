@@ -2,12 +2,14 @@
 
 mod exif;
 mod read;
+mod said;
 mod tiff_rows;
 mod write;
 
 use calibench_model::camera::ImageSize;
 
 pub use read::Opened;
+pub use said::{Said, said};
 pub use write::{PictureKind, WriteOptions, write_picture};
 
 /// Levels of a picture, row by row, the channels of a pixel beside each other.

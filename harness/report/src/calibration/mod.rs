@@ -26,6 +26,7 @@ pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;
 pub use rig::rig_summary;
+pub use uncertainty::FrameUncertainty;
 pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

@@ -52,16 +52,54 @@ pub(super) fn maps(calibration: &Calibration<'_>, camera: usize) -> Vec<Uncertai
     [Distance::Far, Distance::Near(near)].into_iter().filter_map(|distance| map(calibration, camera, distance, &points)).collect()
 }
 
+/// The uncertainty of the image of a point far away, poses held by what was measured: over a grid, and at chosen places.
+#[derive(Clone, Debug)]
+pub struct FrameUncertainty {
+    /// Columns and rows of the grid, from the first pixel's centre to the last's.
+    pub grid: (usize, usize),
+    /// Row by row: where, the standard deviation (2D, px; `None` where the camera has no ray), and whether image points surround it.
+    pub places: Vec<(PixelPoint, Option<f64>, bool)>,
+    /// The same at corners, middles of sides and the middle of the frame, row by row.
+    pub chosen: Vec<(PixelPoint, Option<f64>, bool)>,
+}
+
+impl FrameUncertainty {
+    /// Of a camera; `None` where its interior orientation is fixed, or nothing can be said.
+    pub fn of(calibration: &Calibration<'_>, camera: usize) -> Option<Self> {
+        if calibration.covariances.of_camera(camera).0.is_empty() {
+            return None;
+        }
+        let size = calibration.camera(camera).size();
+        let (grid, measured) = (grid(size), Hull::of(&measured(calibration, camera)));
+        let of = |grid: (usize, usize)| -> Option<Vec<(PixelPoint, Option<f64>, bool)>> {
+            let wanted = places(size, grid);
+            let found = at_places(calibration, camera, Distance::Far, &wanted)?;
+            let sigma = |found: &Uncertainty| (found.covariance.sxx + found.covariance.syy).max(0.0).sqrt();
+            Some(wanted.iter().zip(found).map(|(at, found)| (*at, found.as_ref().map(sigma), measured.holds(*at))).collect())
+        };
+        Some(Self { grid, places: of(grid)?, chosen: of((3, 3))? })
+    }
+}
+
+/// The places of a grid, row by row.
+fn places(size: ImageSize, grid: (usize, usize)) -> Vec<PixelPoint> {
+    let along = |i: usize, n: usize, length: u32| f64::from(length - 1) * i as f64 / (n - 1) as f64;
+    let place = |k: usize| PixelPoint::new(along(k % grid.0, grid.0, size.width), along(k / grid.0, grid.1, size.height));
+    (0..grid.0 * grid.1).map(place).collect()
+}
+
+/// The uncertainty at each of some places; `None` where the camera has no ray.
+fn at_places(calibration: &Calibration<'_>, camera: usize, distance: Distance, wanted: &[PixelPoint]) -> Option<Vec<Option<Uncertainty>>> {
+    let variance = if calibration.solution.counts().redundancy() > 0 { Variance::Estimated } else { Variance::Apriori };
+    let found = calibration.solution.projection_uncertainty(camera, variance, wanted, (distance, Held::ByPoints)).ok()?;
+    let mut found = found.into_iter().peekable();
+    Some(wanted.iter().map(|at| found.next_if(|found| found.at == *at)).collect())
+}
+
 fn map(calibration: &Calibration<'_>, camera: usize, distance: Distance, measured: &[PixelPoint]) -> Option<UncertaintyMap> {
     let size = calibration.camera(camera).size();
     let grid = grid(size);
-    let along = |i: usize, n: usize, length: u32| f64::from(length - 1) * i as f64 / (n - 1) as f64;
-    let place = |k: usize| PixelPoint::new(along(k % grid.0, grid.0, size.width), along(k / grid.0, grid.1, size.height));
-    let wanted: Vec<PixelPoint> = (0..grid.0 * grid.1).map(place).collect();
-    let variance = if calibration.solution.counts().redundancy() > 0 { Variance::Estimated } else { Variance::Apriori };
-    let found = calibration.solution.projection_uncertainty(camera, variance, &wanted, (distance, Held::ByPoints)).ok()?;
-    let mut found = found.into_iter().peekable();
-    let places = wanted.iter().map(|at| found.next_if(|found| found.at == *at)).collect();
+    let places = at_places(calibration, camera, distance, &places(size, grid))?;
     Some(UncertaintyMap { distance, grid, places, measured: Hull::of(measured) })
 }
 

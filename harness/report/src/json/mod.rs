@@ -62,6 +62,15 @@ pub fn write_answer<A: Answer>(mut output: impl Write, answer: &A) -> io::Result
     output.write_all(b"\n")
 }
 
+/// The same document as a value, for what holds it within another.
+///
+/// # Errors
+/// What cannot be written as JSON.
+pub fn answer_value<A: Answer>(answer: &A) -> io::Result<serde_json::Value> {
+    let document = Document { command: A::COMMAND, schema: A::SCHEMA, calibench: env!("CARGO_PKG_VERSION"), answer };
+    Ok(serde_json::to_value(&document)?)
+}
+
 /// Columns and rows of an image.
 #[derive(Serialize, JsonSchema)]
 pub struct Size {

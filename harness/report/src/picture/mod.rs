@@ -1,7 +1,5 @@
 //! Pictures as files: pixels, or lines and text that can be scaled and edited.
 
-mod deflated;
-mod lettering;
 mod pdf;
 
 use std::io;

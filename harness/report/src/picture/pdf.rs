@@ -2,13 +2,12 @@
 
 use std::fmt::Write;
 
+use calibench_prints::{Font, Lettering, deflated};
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use plotters::style::FontTransform;
 use plotters_backend::text_anchor::HPos;
 use plotters_backend::{BackendColor, BackendCoord};
 
-use super::deflated::deflated;
-use super::lettering::Lettering;
 use crate::Canvas;
 use crate::canvas::{EM, Pen, Run, STEP, Stroke, Written, ring, row, runs};
 use crate::html::{Embedded, Kind, dots, part};
@@ -102,7 +101,7 @@ struct Page {
 
 impl Page {
     fn new() -> Self {
-        Self { content: String::new(), images: Vec::new(), opacities: vec![100], lettering: Lettering::new(), opacity: 100 }
+        Self { content: String::new(), images: Vec::new(), opacities: vec![100], lettering: Lettering::new(Font::Regular), opacity: 100 }
     }
 
     fn strokes(&mut self, strokes: &[Stroke]) {
