@@ -14,15 +14,23 @@ pub(super) fn linear<T: Sample, const CH: usize, const LANES: usize, const BOTH:
     let (stride, mut begins) = (job.picture.size.width as usize * CH, [0; SIDE]);
     let mut lines = [[[T::default(); BOTH]; SIDE]; 2];
     for cell in job.cells {
+        let whole = job.window_of_cell::<CH>(cell, 0, [BOTH.next_multiple_of(CH), 2]);
         for row in 0..cell.size[1] {
             let begin = (row * width + left) * CH;
             let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
-            job.run(cell, row, [0.0; 2], &mut run);
-            if !cell.is_full() && run.is_outside() {
-                into.fill(T::default());
-                continue;
-            }
-            if let Some(window) = job.window::<CH>(&run, 0, [BOTH.next_multiple_of(CH), 2], &mut begins) {
+            let window = if let Some(whole) = &whole {
+                job.run_inside(cell, row, &mut run);
+                whole.begins::<CH>(&run, stride, &mut begins);
+                Some(whole.levels)
+            } else {
+                job.run(cell, row, [0.0; 2], &mut run);
+                if !cell.is_full() && run.is_outside() {
+                    into.fill(T::default());
+                    continue;
+                }
+                job.window::<CH>(&run, 0, [BOTH.next_multiple_of(CH), 2], &mut begins)
+            };
+            if let Some(window) = window {
                 for i in 0..SIDE {
                     let begin = begins[i] as usize;
                     if let Some(window) = window.get(begin..begin + stride + BOTH) {
