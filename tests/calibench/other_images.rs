@@ -275,7 +275,9 @@ fn points_beyond_the_images_of_a_camera_are_in_doubt() {
     good(here, &["convert", "camera.yml", "--size", "800x600", "-o", "half.yml"]);
     good(here, &["convert", "camera.yml", "--size", "400x300", "-o", "quarter.yml"]);
     good(here, &["resect", "-q", "--camera", "half.yml", "--points", "points.csv", "--control", "control.csv", "-o", "stations.csv"]);
-    let of = |camera: &str| ["intersect", "-q", "--points", "points.csv", "--stations", "stations.csv", "--camera", camera, "-o", "o.csv"].map(str::to_owned);
+    let of = |camera: &str| {
+        ["intersect", "-q", "--points", "points.csv", "--stations", "stations.csv", "--camera", camera, "-o", "o.csv"].map(str::to_owned)
+    };
     let said = |camera: &str| stderr(&run(here, &of(camera).each_ref().map(String::as_str)));
     assert!(!said("half.yml").contains("lie outside"), "{}", said("half.yml"));
     let told = said("quarter.yml");

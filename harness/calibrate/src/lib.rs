@@ -70,7 +70,6 @@ pub use model::{MODELS, parameters};
 pub use next::{Next, Photograph};
 pub use optics::Optics;
 pub use over_frame::{OverFrame, usual_limit_px};
-pub use placed::is_outside;
 pub use prepared::{Prepared, prepare};
 pub use prior::{NoPrior, Prior};
 pub use reconstructed::{Behind, Reconstructed, Solved, prepare_reconstruction};

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use calibench_calibrate::is_outside;
 use calibench_cameras::ReadOptions;
-use calibench_model::{NamedCamera, PixelPoint};
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
+use calibench_model::{NamedCamera, PixelPoint};
+use calibench_undistort::View;
 use clap::Args;
 use glob::Pattern;
 
@@ -29,9 +29,11 @@ pub struct CameraFiles {
 
 /// Says how many of the points that cameras took lie in no pixel of their images, and returns whether any does: then the images may be of another size.
 pub fn say_outside<'c>(points: impl Iterator<Item = (&'c Camera, PixelPoint)>) -> bool {
-    let count = points.filter(|(camera, at)| is_outside(camera.size(), *at)).count();
+    let count = points.filter(|(camera, at)| !View::Camera(**camera).holds(*at)).count();
     if count > 0 {
-        say!("in doubt: {count} points lie outside the images: is the camera's size that of the images (--size says theirs), and are x and y right?");
+        say!(
+            "in doubt: {count} points lie outside the images: is the camera's size that of the images (--size says theirs), and are x and y right?"
+        );
     }
     count > 0
 }

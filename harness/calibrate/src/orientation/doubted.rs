@@ -30,7 +30,7 @@ impl Orientations {
 
 fn outside(one: &ImageOrientation) -> Option<String> {
     let count = one.outside;
-    (count > 0).then(|| format!("{count} points lie outside the image: is the camera's size that of the image (--size says the image's), and are x and y right?"))
+    (count > 0).then(|| format!("{count} points lie outside the image: is the camera's size that of the image, and are x and y right?"))
 }
 
 fn far(one: &ImageOrientation) -> Option<String> {

@@ -13,9 +13,9 @@ use clap::Args;
 use super::context::Context;
 use super::convert::positive;
 use super::output;
+use crate::camera_files::say_outside;
 use crate::deliver::deliver;
 use crate::failure::Failure;
-use crate::camera_files::say_outside;
 use crate::inputs::{camera_for, read_measured};
 
 #[derive(Args)]

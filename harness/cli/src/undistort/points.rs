@@ -18,7 +18,9 @@ pub(super) fn moved(table: &Path, views: &Views, output: &OutputFile, quiet: boo
     let points = read_measured(table)?;
     let strangers = points.rows().filter(|given| !views.given.holds(given.start.position)).count();
     if strangers > 0 {
-        say!("warning: {strangers} of the points that are given lie outside of their pictures: is the camera's size that of the photographs (--size says theirs)?");
+        say!(
+            "warning: {strangers} of the points that are given lie outside of their pictures: is the camera's size that of the photographs (--size says theirs)?"
+        );
     }
     let rows: Vec<MeasuredRow<'_>> = points
         .rows()

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use calibench_cameras::{ReadOptions, camera_bytes};
 use calibench_cameras::conversion::converted;
 use calibench_cameras::target::{Given, goal};
+use calibench_cameras::{ReadOptions, camera_bytes};
 use calibench_files::NewFolder;
 use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, TangentialOrder};
@@ -32,7 +32,9 @@ pub(super) struct Views {
 impl Views {
     pub(super) fn of(command: &Undistort) -> Result<Self, Failure> {
         if command.redistort && command.same_camera && command.target_file().is_none() {
-            return Err(Failure::input("--same-camera: pictures of a new view have the size that --frame gives them; with --redistort it is for --to FILE"));
+            return Err(Failure::input(
+                "--same-camera: pictures of a new view have the size that --frame gives them; with --redistort it is for --to FILE",
+            ));
         }
         let given = command.given_size()?;
         let (of_camera, of_target) = if command.redistort { (None, given) } else { (given, None) };
