@@ -194,6 +194,11 @@ perf-boards: python
 perf-wide SCENES="500":
     SCENES={{SCENES}} cargo test --locked --release -p calibench-detect --test detect -- --ignored --nocapture --test-threads 1 many_
 
+# Undistorted pictures of 12 megapixels beside OpenCV 5's remap with ready maps, on one thread, in turn (`./bootstrap peers` installs it)
+perf-undistort ROUNDS="3":
+    cargo build {{everything}} --quiet --example time
+    RAYON_NUM_THREADS=1 target/peers/bin/python harness/undistort/benches/remap.py target/release/examples/time {{ROUNDS}}
+
 # Seconds of whole commands beside Python with OpenCV that does the same, and how they grow
 perf-commands: python
     target/python/bin/python harness/python/benches/commands.py

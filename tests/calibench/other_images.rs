@@ -222,3 +222,84 @@ fn images_of_half_the_size_are_judged_and_calibrated_with_the_camera_of_the_whol
         assert!(rms < most, "{more:?}: {text}");
     }
 }
+
+/// What commands make of the camera of the whole, said to be the same, is what they make of that of half the size; and they refuse it where nobody says so.
+#[test]
+fn every_command_takes_the_camera_of_another_size_where_it_is_said_to_be_the_same() {
+    let folder = folder();
+    let here = folder.path();
+    simulated(here, &camera(&here.join("camera.yml")));
+    good(here, &["convert", "camera.yml", "--size", "800x600", "-o", "half.yml"]);
+    let photo = image::GrayImage::from_fn(800, 600, |x, y| image::Luma([(x * 7 + y * 13) as u8]));
+    photo.save(here.join("photo.png")).unwrap();
+    good(here, &["resect", "-q", "--camera", "half.yml", "--points", "points.csv", "--control", "control.csv", "-o", "stations.csv"]);
+    let factor = "is of images of 1600 x 1200 px, and these have 800 x 600 px: perhaps the same camera, its images times 1/2; --same-camera takes it so";
+    let taken = "camera.yml: taken as the same camera in another size: 1600 x 1200 px, times 1/2: 800 x 600 px";
+    let points = ["--points", "points.csv", "-q"];
+    let pair = ["orient", "--left", "i0.png", "--right", "i3.png", "--base", "100"];
+    for (arguments, is_of_points) in [
+        ([&["resect", "--control", "control.csv"][..], &points].concat(), true),
+        ([&["intersect", "--stations", "stations.csv"][..], &points].concat(), true),
+        ([&pair[..], &points].concat(), true),
+        (vec!["undistort", "-q", "points.csv"], true),
+        (vec!["undistort", "-q", "photo.png", "--frame", "crop"], false),
+    ] {
+        let (out, size): (_, &[&str]) = if is_of_points { ("o.csv", &["--size", "800x600"]) } else { ("flat", &[]) };
+        let written = || {
+            let file = if is_of_points { out } else { "flat/photo.png" };
+            std::fs::read(here.join(file)).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
+        };
+        let of = |camera: &str, more: &[&str]| run(here, &[&arguments[..], &["--camera", camera, "-o", out], more].concat());
+        let half = of("half.yml", &[]);
+        let expected = written();
+        let refused = of("camera.yml", size);
+        assert!(refused.status.code() == Some(2) && stderr(&refused).contains(factor), "{arguments:?}: {}", stderr(&refused));
+        let same = of("camera.yml", &[size, &["--same-camera"]].concat());
+        assert_eq!(half.status.code(), same.status.code(), "{arguments:?}: {}", stderr(&same));
+        assert!(stderr(&same).contains(taken), "{arguments:?}: {}", stderr(&same));
+        assert!(written() == expected, "{arguments:?}");
+    }
+    let serve = ["point", "photo.png", "--serve", "--idle", "0.01", "--camera", "camera.yml"];
+    let refused = run(here, &serve);
+    assert!(refused.status.code() == Some(2) && stderr(&refused).contains(factor), "{}", stderr(&refused));
+    let same = run(here, &[&serve[..], &["--same-camera"]].concat());
+    assert!(same.status.success() && stderr(&same).contains(taken), "{}", stderr(&same));
+}
+
+/// Points that lie in no pixel of a camera's images are said, since the images may be of another size.
+#[test]
+fn points_beyond_the_images_of_a_camera_are_in_doubt() {
+    let folder = folder();
+    let here = folder.path();
+    simulated(here, &camera(&here.join("camera.yml")));
+    good(here, &["convert", "camera.yml", "--size", "800x600", "-o", "half.yml"]);
+    good(here, &["convert", "camera.yml", "--size", "400x300", "-o", "quarter.yml"]);
+    good(here, &["resect", "-q", "--camera", "half.yml", "--points", "points.csv", "--control", "control.csv", "-o", "stations.csv"]);
+    let of = |camera: &str| {
+        ["intersect", "-q", "--points", "points.csv", "--stations", "stations.csv", "--camera", camera, "-o", "o.csv"].map(str::to_owned)
+    };
+    let said = |camera: &str| stderr(&run(here, &of(camera).each_ref().map(String::as_str)));
+    assert!(!said("half.yml").contains("lie outside"), "{}", said("half.yml"));
+    let told = said("quarter.yml");
+    assert!(told.contains(" points lie outside the images: is the camera's size that of the images (--size says theirs)"), "{told}");
+    let undistorted = run(here, &["undistort", "points.csv", "--camera", "quarter.yml", "-o", "o.csv"]);
+    assert!(stderr(&undistorted).contains(" of the points that are given lie outside of their pictures"), "{}", stderr(&undistorted));
+}
+
+/// A file that states no size is of the images that it is first used for, and of no others.
+#[test]
+fn a_camera_without_a_size_serves_photographs_of_one_size() {
+    let folder = folder();
+    let here = folder.path();
+    let bare: String = CAMERA.lines().filter(|line| !line.starts_with("image_")).map(|line| format!("{line}\n")).collect();
+    std::fs::write(here.join("bare.yml"), bare).unwrap();
+    for (name, width, height) in [("a.png", 1600, 1200), ("b.png", 800, 600)] {
+        image::GrayImage::new(width, height).save(here.join(name)).unwrap();
+    }
+    let serve = |photos: &[&str]| run(here, &[&["point", "--serve", "--idle", "0.01", "--camera", "bare.yml"], photos].concat());
+    assert!(serve(&["a.png"]).status.success(), "{}", stderr(&serve(&["a.png"])));
+    let refused = serve(&["a.png", "b.png"]);
+    assert!(refused.status.code() == Some(2) && stderr(&refused).contains("times 1/2"), "{}", stderr(&refused));
+    // Of pictures that are undistorted the size need not be said either.
+    good(here, &["undistort", "-q", "a.png", "--camera", "bare.yml", "-o", "flat"]);
+}

@@ -108,14 +108,16 @@ def caliscope(path, points):
 
 def lensfun(path, points):
     """lensfun's own arithmetic of one point at a time, in single precision: rows of pixels it takes four at a time on some processors, with approximate reciprocals and
-    the factors of other pixels. The undistorted picture is rectilinear and has the focal length of the data base; the image is `SIZE`, of several lenses the `LENS`."""
+    the factors of other pixels. The undistorted picture is rectilinear and has the focal length of the data base; the image is `SIZE`, of several lenses the `LENS` that
+    was measured at `FOCAL`: cameras with sensors of several sizes may have lenses of one name."""
     import lensfunpy
 
     with open(path) as text:
         database = lensfunpy.Database(xml=text.read(), load_common=False, load_bundled=False)
     name, focal = os.environ.get("LENS"), float(os.environ.get("FOCAL", "0"))
-    lens = next(lens for lens in database.lenses if name in (None, lens.model))
-    calibration = next(c for c in lens.calib_distortion if focal in (0, c.focal))
+    # It holds floats of 32 bits.
+    lenses = [lens for lens in database.lenses if name in (None, lens.model)]
+    lens, calibration = next((lens, c) for lens in lenses for c in lens.calib_distortion if not focal or abs(c.focal - focal) < 1e-5 * focal)
     width, height = (int(side) for side in os.environ["SIZE"].split("x"))
     modifier = lensfunpy.Modifier(lens, lens.crop_factor, width, height)
     flags = lensfunpy.ModifyFlags.DISTORTION | lensfunpy.ModifyFlags.GEOMETRY

@@ -33,18 +33,15 @@ pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
     Ok(file)
 }
 
+/// The first camera of a file for images of `size`, of another size where `is_same` says that it is the same camera; where their size is not known, of images of the size
+/// that the file states.
+pub fn camera_for(path: &Path, size: Option<ImageSize>, is_same: bool) -> Result<Camera, Failure> {
+    let named = first(path, &ReadOptions { size, other_size: true, ..ReadOptions::default() })?;
+    Ok(size.map_or_else(|| Ok(named.clone()), |size| for_images(path, &named, size, is_same))?.camera)
+}
+
 /// The first camera of a file.
-pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    Ok(first(path, &ReadOptions { size, ..ReadOptions::default() })?.camera)
-}
-
-/// The first camera of a file for images of `size`, of another size where `is_same` says that it is the same camera.
-pub fn camera_for(path: &Path, size: ImageSize, is_same: bool) -> Result<Camera, Failure> {
-    let named = first(path, &ReadOptions { size: Some(size), other_size: true, ..ReadOptions::default() })?;
-    Ok(for_images(path, &named, size, is_same)?.camera)
-}
-
-fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
+pub fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
     let (cameras, count) = match CameraList::open(path, options)? {
         Some(list) => (list.pieces(1)?.next().transpose()?.unwrap_or_default(), list.len()),
         None => {

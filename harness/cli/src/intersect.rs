@@ -9,7 +9,7 @@ use calibench_exchange::read_stations;
 use calibench_report::plain;
 use clap::Args;
 
-use super::camera_files::CameraFiles;
+use super::camera_files::{CameraFiles, say_outside};
 use super::context::Context;
 use super::output;
 use crate::deliver::deliver;
@@ -50,6 +50,8 @@ impl Intersect {
         for (image, _) in survey.images.iter().zip(&poses).filter(|(_, pose)| pose.is_none()) {
             say!("image {image}: has no station; its points are left out");
         }
+        let sights = (0..survey.sights()).map(|index| survey.sight(index));
+        let is_outside = say_outside(sights.map(|sight| (&cameras[sight.image], sight.position)));
         let stated = StatedPrecision { tolerance_px: self.tolerance, sigma_px: self.sigma };
         let points = ObjectPoints::of(&survey, &cameras, &poses, self.least_angle.to_radians(), stated);
         points.first_failures.iter().for_each(|(target, error)| say!("target {}: {error}", survey.target(*target)));
@@ -79,6 +81,6 @@ impl Intersect {
             say!("{how}: {misfits} of {} targets do not fit (chi squared at 0.001 of each; the table's notes say which)", points.len());
         }
         deliver(output.as_ref(), |file| points.write(&survey, file))?;
-        if agree && !no_chance { Ok(()) } else { Err(Failure::Doubt) }
+        if agree && !no_chance && !is_outside { Ok(()) } else { Err(Failure::Doubt) }
     }
 }

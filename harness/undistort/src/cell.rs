@@ -192,9 +192,8 @@ impl Cell {
                 return;
             }
             Shape::Smooth(shape) => {
-                let (across, down) = (2.0 / (self.size[0].max(2) - 1) as f32, 2.0 / (self.size[1].max(2) - 1) as f32);
-                let v = (row as f32 + shift[1]) * down - 1.0;
-                let line = row_of(shape, v);
+                let across = 2.0 / (self.size[0].max(2) - 1) as f32;
+                let line = self.line(shape, row as f32 + shift[1]);
                 let begin = shift[0] * across - 1.0;
                 for i in 0..SIDE {
                     let u = i as f32 * across + begin;
@@ -216,6 +215,37 @@ impl Cell {
             run.down[i] = down;
             run.inside[i] = inside;
         }
+    }
+
+    /// Whether polynomials stand for its places.
+    #[inline(always)]
+    pub(crate) fn is_smooth(&self) -> bool {
+        matches!(self.shape, Shape::Smooth(_))
+    }
+
+    /// The pixels of row `row` of a square of polynomials all of whose pixels lie in the source, of which `offset` columns and rows are left out.
+    #[inline(always)]
+    pub(crate) fn run_inside(&self, row: usize, offset: [i32; 2], run: &mut Run) {
+        let Shape::Smooth(shape) = &self.shape else { return };
+        run.count = self.size[0];
+        let across = 2.0 / (self.size[0].max(2) - 1) as f32;
+        let line = self.line(shape, row as f32);
+        for i in 0..SIDE {
+            // Behind the last one there is none, wherever that would be.
+            let u = if i < self.size[0] { i as f32 * across - 1.0 } else { 1.0 };
+            let ((column, right), (row, down)) = (parted(polynomial(&line, 0, u)), parted(polynomial(&line, 4, u)));
+            run.column[i] = column + self.base[0] - offset[0];
+            run.row[i] = row + self.base[1] - offset[1];
+            run.right[i] = right;
+            run.down[i] = down;
+        }
+    }
+
+    /// The coefficients of a row.
+    #[inline(always)]
+    fn line(&self, shape: &[[f32; 8]; 4], row: f32) -> [f32; 8] {
+        let down = 2.0 / (self.size[1].max(2) - 1) as f32;
+        row_of(shape, row * down - 1.0)
     }
 
     /// The places of a row of single ones.

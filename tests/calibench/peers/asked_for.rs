@@ -106,6 +106,10 @@ fn lenses_of_lensfun_s_own_data_base_are_read() {
         let found =
             read_camera_with(&file, &ReadOptions { size: Some(size), ..ReadOptions::default() }).unwrap_or_else(|error| panic!("{error}"));
         for named in found.cameras.iter().step_by(37) {
+            // Of two measurements of one lens at one focal length lensfun keeps one; which, nobody says.
+            if found.cameras.iter().filter(|other| other.name == named.name).count() > 1 {
+                continue;
+            }
             let (lens, focal) =
                 named.name.rsplit_once(" at ").map_or((named.name.as_str(), "0"), |(lens, rest)| (lens, rest.trim_end_matches(" mm")));
             let variables = [("SIZE", "1500x1000"), ("LENS", lens), ("FOCAL", focal)];

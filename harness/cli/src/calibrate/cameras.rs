@@ -197,7 +197,7 @@ impl Cameras {
             camera.start = self
                 .start(&camera.name)
                 .filter(|_| starts)
-                .map(|path| crate::inputs::camera_for(path.as_ref(), camera.size, self.same_camera))
+                .map(|path| crate::inputs::camera_for(path.as_ref(), Some(camera.size), self.same_camera))
                 .transpose()?;
         }
         Ok(cameras)

@@ -47,7 +47,7 @@ impl Eccentricity {
             return Ok(Vec::new());
         };
         let survey = Survey::new(points.clone(), &read_control(control)?)?;
-        let cameras = CameraFiles::new(self.camera.clone(), self.size).of_images(&survey.images, self.same_camera, size)?;
+        let cameras = CameraFiles::new(self.camera.clone(), self.size, self.same_camera).of_images(&survey.images, size)?;
         let poses = poses_of(&survey, &read_stations(stations)?)?;
         Ok(offsets(&survey, &cameras, &poses, discs)?)
     }

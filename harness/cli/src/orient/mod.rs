@@ -1,6 +1,6 @@
 //! `calibench orient`: the relative orientation of two images, and the model that they make; interior orientations fixed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibench_adjust::approximate::{ApproximateError, Tolerance};
 use calibench_calibrate::orientation::{Pair, PairError, Seen, Side};
@@ -13,9 +13,10 @@ use clap::Args;
 use super::context::Context;
 use super::convert::positive;
 use super::output;
+use crate::camera_files::say_outside;
 use crate::deliver::deliver;
 use crate::failure::Failure;
-use crate::inputs::{camera, read_measured};
+use crate::inputs::{camera_for, read_measured};
 
 #[derive(Args)]
 pub struct Orient {
@@ -34,9 +35,12 @@ pub struct Orient {
     /// Camera of the right image, if it is another one
     #[arg(long, value_name = "FILE")]
     camera_right: Option<PathBuf>,
-    /// Size of the images, for camera files that do not state it
+    /// Size of the images, for camera files that do not state it or are of another size
     #[arg(long, value_name = "WxH", value_parser = super::reading::size)]
     size: Option<calibench_model::camera::ImageSize>,
+    /// The camera of a file took the images of --size, too, if they have the same aspect and another size: it is taken as it is in theirs
+    #[arg(long, requires = "size")]
+    same_camera: bool,
     /// Length of the base, object units
     #[arg(long, value_name = "LENGTH", default_value_t = 1.0, value_parser = positive, allow_negative_numbers = true)]
     base: f64,
@@ -63,9 +67,12 @@ impl Orient {
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let poses = output::table("--poses", self.poses.as_deref(), &inputs)?;
         output::distinct(("-o", output.as_ref()), ("--poses", poses.as_ref()))?;
-        let left = camera(&self.camera, self.size)?;
-        let right = self.camera_right.as_deref().map_or(Ok(left), |path| camera(path, self.size))?;
+        let camera = |path: &Path| camera_for(path, self.size, self.same_camera);
+        let left = camera(&self.camera)?;
+        let right = self.camera_right.as_deref().map_or(Ok(left), camera)?;
         let seen = self.seen(&read_measured(&self.points)?)?;
+        let sights = seen.iter().flat_map(|seen| [(&left, seen.at[0]), (&right, seen.at[1])]);
+        let is_outside = say_outside(sights.filter_map(|(camera, at)| Some((camera, at?))));
         let pair = self.orient([&left, &right], seen)?;
         if !context.quiet {
             crate::say::plain(escape::message(&orientation::summary(&pair, [&self.left, &self.right])));
@@ -75,7 +82,7 @@ impl Orient {
         if let Some(poses) = &poses {
             deliver(Some(poses), |file| pair.write_poses(file, [&self.left, &self.right]))?;
         }
-        if pair.found.rival.is_none() { Ok(()) } else { Err(Failure::Doubt) }
+        if pair.found.rival.is_none() && !is_outside { Ok(()) } else { Err(Failure::Doubt) }
     }
 
     fn orient(&self, cameras: [&Camera; 2], seen: Vec<Seen>) -> Result<Pair, Failure> {

@@ -56,6 +56,9 @@ pub struct Point {
     /// With --serve: a camera for the predictions, a file of any known format; of several cameras IMAGES=FILE, as in left*=left.yaml
     #[arg(long = "camera", value_name = "[IMAGES=]FILE")]
     cameras: Vec<ImagesFile>,
+    /// With --serve: the camera of a file took the photographs, too, if they have the same aspect and another size: it is taken as it is in theirs
+    #[arg(long)]
+    same_camera: bool,
     /// With --serve: the table that keeps what is pointed at; what is in it is shown, and changes are merged into it by target [default: pointed.csv beside the first photograph]
     #[arg(long, value_name = "CSV")]
     points: Option<PathBuf>,
@@ -75,11 +78,15 @@ impl Point {
         let given = [
             ("-m", self.method.is_some()),
             ("--camera", !self.cameras.is_empty()),
+            ("--same-camera", self.same_camera),
             ("--points", self.points.is_some()),
             ("--idle", self.idle.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, given)| *given && !self.serve) {
             return Err(Failure::input(format!("{option}: is of the server; give --serve in place of -o")));
+        }
+        if self.same_camera && self.cameras.is_empty() {
+            return Err(Failure::input("--same-camera: says whose photographs these are; give its file with --camera"));
         }
         let cameras = self.cameras.iter().map(ImagesFile::path);
         let inputs = inputs_of(self.photos.iter().chain(&self.control).chain(&self.measured).chain(cameras));

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use calibench_files::Inputs;
 use calibench_model::ControlRow;
-use calibench_model::camera::CameraModel;
 use calibench_point::{Content, Kept, Served, Server};
 
 use super::{IDLE, POINTED, Point};
@@ -42,14 +41,8 @@ impl Point {
         let kept = Kept::open(file, names.clone(), self.kind).map_err(Failure::input)?;
         let mut served = Served::new(content, photos, (&method, operator.as_ref()), self.kind, control, &kept)?;
         if !self.cameras.is_empty() {
-            let cameras = CameraFiles::new(self.cameras.clone(), served.sizes().first().copied()).of(&names)?;
-            for ((camera, size), name) in cameras.iter().zip(served.sizes()).zip(&names) {
-                let of = camera.size();
-                if of != *size {
-                    let [a, b] = [of, *size].map(|size| format!("{} x {} px", size.width, size.height));
-                    return Err(Failure::input(format!("--camera: the camera is of images of {a}, but {name} has {b}")));
-                }
-            }
+            let size = |image: &str| names.iter().position(|name| name == image).and_then(|place| served.sizes().get(place).copied());
+            let cameras = CameraFiles::new(self.cameras.clone(), None, self.same_camera).of_images(&names, size)?;
             served = served.with_cameras(cameras);
         }
         let server = Server::open().map_err(|error| Failure::input(format!("--serve: {error}")))?;

@@ -7,7 +7,7 @@ mod views;
 use std::path::{Path, PathBuf};
 
 use calibench_cameras::inputs_of;
-use calibench_images::picture::PictureKind;
+use calibench_images::picture::{Opened, PictureKind};
 use calibench_model::camera::ImageSize;
 use calibench_undistort::Kernel;
 use clap::{Args, ValueEnum};
@@ -26,9 +26,12 @@ pub struct Undistort {
     /// The camera of the photographs: a file of any known format
     #[arg(long, value_name = "FILE")]
     camera: PathBuf,
-    /// Size of the photographs, for camera files that do not state it
+    /// Size of the photographs, for camera files that do not state it or, of points, are of another size
     #[arg(long, value_name = "WxH", value_parser = crate::reading::size)]
     size: Option<ImageSize>,
+    /// The camera of --camera took what is given, too, if that has the same aspect and another size: it is taken as it is in theirs
+    #[arg(long)]
+    same_camera: bool,
     /// What the new pictures are as if taken by: `pinhole`, `equirectangular`, or the camera of a file
     #[arg(long, value_name = "VIEW|FILE", default_value = "pinhole")]
     to: String,
@@ -132,6 +135,14 @@ impl Undistort {
     /// The file of the camera that --to names, if it names one.
     fn target_file(&self) -> Option<PathBuf> {
         (!views::NAMES.contains(&self.to.as_str())).then(|| PathBuf::from(&self.to))
+    }
+
+    /// The size of what is given: of the first photograph; of points that of the photographs, if it is stated.
+    fn given_size(&self) -> Result<Option<ImageSize>, Failure> {
+        match self.files.first() {
+            Some(path) if !is_table(path) => Ok(Some(Opened::new(path, self.ignore_orientation)?.form().size)),
+            _ => Ok(self.size.filter(|_| !self.redistort)),
+        }
     }
 
     /// The views of what is given and of what is made.

@@ -16,6 +16,12 @@ const METHOD: &str = "undistort";
 /// Writes the points of `table` where they lie in new pictures; those that have no place there have none and say why.
 pub(super) fn moved(table: &Path, views: &Views, output: &OutputFile, quiet: bool) -> Result<(), Failure> {
     let points = read_measured(table)?;
+    let strangers = points.rows().filter(|given| !views.given.holds(given.start.position)).count();
+    if strangers > 0 {
+        say!(
+            "warning: {strangers} of the points that are given lie outside of their pictures: is the camera's size that of the photographs (--size says theirs)?"
+        );
+    }
     let rows: Vec<MeasuredRow<'_>> = points
         .rows()
         .map(|given| match views.given.point_in(&views.made, &given.start) {

@@ -1,8 +1,10 @@
 //! What is given, and what is made of it.
 
-use calibench_cameras::camera_bytes;
+use std::path::Path;
+
 use calibench_cameras::conversion::converted;
 use calibench_cameras::target::{Given, goal};
+use calibench_cameras::{ReadOptions, camera_bytes};
 use calibench_files::NewFolder;
 use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, TangentialOrder};
@@ -14,6 +16,7 @@ use super::{Frame, Undistort};
 use crate::convert::no_target;
 use crate::failure::Failure;
 use crate::inputs;
+use crate::same_camera::for_images;
 
 /// What --to names beside files.
 pub(super) const NAMES: [&str; 2] = ["pinhole", "equirectangular"];
@@ -28,7 +31,14 @@ pub(super) struct Views {
 
 impl Views {
     pub(super) fn of(command: &Undistort) -> Result<Self, Failure> {
-        let camera = inputs::camera(&command.camera, command.size)?;
+        if command.redistort && command.same_camera && command.target_file().is_none() {
+            return Err(Failure::input(
+                "--same-camera: pictures of a new view have the size that --frame gives them; with --redistort it is for --to FILE",
+            ));
+        }
+        let given = command.given_size()?;
+        let (of_camera, of_target) = if command.redistort { (None, given) } else { (given, None) };
+        let camera = taken(&command.camera, command.size.or(of_camera), of_camera, command)?;
         let photograph = View::Camera(camera);
         let new = match (command.target_file(), command.to.as_str()) {
             (Some(file), _) => {
@@ -45,7 +55,7 @@ impl Views {
                         NAMES.join(", ")
                     )));
                 }
-                View::Camera(inputs::camera(&file, command.size)?)
+                View::Camera(taken(&file, of_target.or(command.size), of_target, command)?)
             }
             (None, name) => {
                 let target = if name == NAMES[0] { Target::Pinhole } else { Target::Equirectangular };
@@ -113,6 +123,19 @@ impl Views {
         let Some((name, bytes)) = file else { return Ok(()) };
         folder.write(name, |file| file.write_all(bytes))?;
         Ok(())
+    }
+}
+
+/// The first camera of a file, which is of images of the size `stated` if it does not say it, for images of the size `given`, where that is known.
+fn taken(path: &Path, stated: Option<ImageSize>, given: Option<ImageSize>, command: &Undistort) -> Result<Camera, Failure> {
+    // Beside photographs, whose size is known, a size that the user states is that of the camera.
+    let other_size = command.size.is_none() || given.is_none_or(|given| Some(given) == command.size);
+    let named = inputs::first(path, &ReadOptions { size: stated, other_size, ..ReadOptions::default() })?;
+    let ImageSize { width, height } = named.camera.size();
+    match given {
+        // Of a photograph that is turned more is said where all photographs are looked at.
+        Some(given) if (given.width, given.height) != (height, width) => Ok(for_images(path, &named, given, command.same_camera)?.camera),
+        _ => Ok(named.camera),
     }
 }
 

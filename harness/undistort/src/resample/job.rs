@@ -17,6 +17,24 @@ pub(super) struct Job<'a, T> {
     pub(super) weights: &'a Weights,
 }
 
+/// What the pixels of a square ask for.
+pub(super) struct Window<'a, T> {
+    /// From the first level on.
+    pub(super) levels: &'a [T],
+    left: i32,
+    top: i32,
+}
+
+impl<T> Window<'_, T> {
+    /// Where the levels of each pixel of a run begin.
+    #[inline(always)]
+    pub(super) fn begins<const CH: usize>(&self, run: &Run, stride: usize, begins: &mut [u32; SIDE]) {
+        for i in 0..SIDE {
+            begins[i] = (run.row[i] - self.top) as u32 * stride as u32 + (run.column[i] - self.left) as u32 * CH as u32;
+        }
+    }
+}
+
 /// What a kernel needs, made once.
 pub(super) struct Weights {
     /// Of columns, for each channel, and of rows.
@@ -88,9 +106,36 @@ impl<T: Sample> Job<'_, T> {
         self.picture.samples.get(row * stride + (left - before) as usize * CH..)
     }
 
+    /// What the pixels of a square ask for that lies in the picture as a whole, as [`Self::window`] of a run; `None` where some is beyond the border, or is not there.
+    #[inline(always)]
+    pub(super) fn window_of_cell<const CH: usize>(&self, cell: &Cell, before: i32, [lanes, rows]: [usize; 2]) -> Option<Window<'_, T>> {
+        if !cell.is_full() || !cell.is_smooth() {
+            return None;
+        }
+        let ImageSize { width, height } = self.picture.size;
+        let [left, right] = [cell.columns[0] - self.offset[0], cell.columns[1] - self.offset[0]];
+        let [top, bottom] = [cell.rows[0] - self.offset[1], cell.rows[1] - self.offset[1]];
+        let (first, last) = (top - before, bottom - before + rows as i32);
+        let stride = width as usize * CH;
+        let is_held = left >= before && first >= 0 && last <= height as i32 && (right - before) as usize + lanes / CH <= width as usize;
+        // Places are counted in 32 bits.
+        if !is_held || (bottom - top + 1) as usize * stride > i32::MAX as usize {
+            return None;
+        }
+        let row = (first as usize).checked_sub(self.picture.first)?;
+        let levels = self.picture.samples.get(row * stride + (left - before) as usize * CH..)?;
+        Some(Window { levels, left, top })
+    }
+
     /// Columns of all squares together.
     pub(super) fn width(&self) -> usize {
         self.cells.iter().map(|cell| cell.size[0]).sum()
+    }
+
+    /// The pixels of a row of a square all of which lie in the source and by polynomials; which lie inside is left as it is.
+    #[inline(always)]
+    pub(super) fn run_inside(&self, cell: &Cell, row: usize, run: &mut Run) {
+        cell.run_inside(row, self.offset, run);
     }
 
     #[inline(always)]

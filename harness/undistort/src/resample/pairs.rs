@@ -14,15 +14,23 @@ pub(super) fn linear<T: Sample, const CH: usize, const LANES: usize, const BOTH:
     let (stride, mut begins) = (job.picture.size.width as usize * CH, [0; SIDE]);
     let mut lines = [[[T::default(); BOTH]; SIDE]; 2];
     for cell in job.cells {
+        let whole = job.window_of_cell::<CH>(cell, 0, [BOTH.next_multiple_of(CH), 2]);
         for row in 0..cell.size[1] {
             let begin = (row * width + left) * CH;
             let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
-            job.run(cell, row, [0.0; 2], &mut run);
-            if !cell.is_full() && run.is_outside() {
-                into.fill(T::default());
-                continue;
-            }
-            if let Some(window) = job.window::<CH>(&run, 0, [BOTH.next_multiple_of(CH), 2], &mut begins) {
+            let window = if let Some(whole) = &whole {
+                job.run_inside(cell, row, &mut run);
+                whole.begins::<CH>(&run, stride, &mut begins);
+                Some(whole.levels)
+            } else {
+                job.run(cell, row, [0.0; 2], &mut run);
+                if !cell.is_full() && run.is_outside() {
+                    into.fill(T::default());
+                    continue;
+                }
+                job.window::<CH>(&run, 0, [BOTH.next_multiple_of(CH), 2], &mut begins)
+            };
+            if let Some(window) = window {
                 for i in 0..SIDE {
                     let begin = begins[i] as usize;
                     if let Some(window) = window.get(begin..begin + stride + BOTH) {
@@ -75,31 +83,58 @@ fn lines_at_border<T: Sample, const CH: usize, const BOTH: usize>(job: &Job<'_, 
 /// The 2 x 2 pixels around each place of a run, channel by channel.
 struct Corners<T>([[[T; SIDE]; 4]; CHANNELS]);
 
+/// As [`linear`], channel by channel, which is faster where there are several.
+#[inline(always)]
+pub(super) fn linear_by_channels<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
+    by_channels::<T, CH, false>(job, into);
+}
+
 /// Means over the area of a pixel where the picture shrinks, and of 2 x 2 pixels elsewhere.
 #[inline(always)]
 pub(super) fn area<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T]) {
+    by_channels::<T, CH, true>(job, into);
+}
+
+#[inline(always)]
+fn by_channels<T: Sample, const CH: usize, const IS_AREA: bool>(job: &Job<'_, T>, into: &mut [T]) {
     let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
+    let (stride, mut begins) = (job.picture.size.width as usize * CH, [0; SIDE]);
     let mut corners = Corners([[[T::default(); SIDE]; 4]; CHANNELS]);
     for cell in job.cells {
+        let whole = job.window_of_cell::<CH>(cell, 0, [2 * CH, 2]);
         for row in 0..cell.size[1] {
             let begin = (row * width + left) * CH;
             let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
-            job.run(cell, row, [0.0; 2], &mut run);
-            if !cell.is_full() && run.is_outside() {
-                into.fill(T::default());
-                continue;
+            if let Some(whole) = &whole {
+                job.run_inside(cell, row, &mut run);
+                whole.begins::<CH>(&run, stride, &mut begins);
+                gather_within::<T, CH>(whole.levels, stride, &begins, &mut corners);
+            } else {
+                job.run(cell, row, [0.0; 2], &mut run);
+                if !cell.is_full() && run.is_outside() {
+                    into.fill(T::default());
+                    continue;
+                }
+                gather::<T, CH>(job, &run, &mut corners);
             }
             let mut levels = [[0.0_f32; SIDE]; CHANNELS];
-            gather::<T, CH>(job, &run, &mut corners);
             for channel in 0..CH {
                 mix(&corners.0[channel], &run, &mut levels[channel]);
             }
-            mean::<T, CH>(job, cell, row, &run.inside, &mut corners, &mut levels);
+            if IS_AREA {
+                mean::<T, CH>(job, cell, row, &mut corners, &mut levels);
+            }
             let mut found = [[T::default(); SIDE]; CHANNELS];
             for channel in 0..CH {
                 for i in 0..SIDE {
-                    let level = if run.inside[i] { levels[channel][i] } else { 0.0 };
-                    found[channel][i] = T::of_f32(level);
+                    found[channel][i] = T::of_f32(levels[channel][i]);
+                }
+            }
+            if whole.is_none() {
+                for channel in 0..CH {
+                    for i in 0..SIDE {
+                        found[channel][i] = if run.inside[i] { found[channel][i] } else { T::default() };
+                    }
                 }
             }
             let into = into.as_chunks_mut::<CH>().0;
@@ -117,7 +152,14 @@ pub(super) fn area<T: Sample, const CH: usize>(job: &Job<'_, T>, into: &mut [T])
 fn gather<T: Sample, const CH: usize>(job: &Job<'_, T>, run: &Run, corners: &mut Corners<T>) {
     let (stride, mut begins) = (job.picture.size.width as usize * CH, [0; SIDE]);
     let window = job.window::<CH>(run, 0, [2 * CH, 2], &mut begins);
-    let Some(window) = window else { return gather_at_border::<T, CH>(job, run, corners) };
+    match window {
+        Some(window) => gather_within::<T, CH>(window, stride, &begins, corners),
+        None => gather_at_border::<T, CH>(job, run, corners),
+    }
+}
+
+#[inline(always)]
+fn gather_within<T: Sample, const CH: usize>(window: &[T], stride: usize, begins: &[u32; SIDE], corners: &mut Corners<T>) {
     for i in 0..SIDE {
         let begin = begins[i] as usize;
         if let Some(window) = window.get(begin..begin + stride + 2 * CH) {
@@ -162,7 +204,6 @@ fn mean<T: Sample, const CH: usize>(
     job: &Job<'_, T>,
     cell: &Cell,
     row: usize,
-    inside: &[bool; SIDE],
     corners: &mut Corners<T>,
     levels: &mut [[f32; SIDE]; CHANNELS],
 ) {
@@ -189,7 +230,7 @@ fn mean<T: Sample, const CH: usize>(
         }
     }
     for channel in 0..CH {
-        for i in (0..SIDE).filter(|i| inside[*i] && count[*i] > 0.0) {
+        for i in (0..SIDE).filter(|i| count[*i] > 0.0) {
             levels[channel][i] = sums[channel][i] / count[i];
         }
     }

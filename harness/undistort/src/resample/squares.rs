@@ -1,7 +1,7 @@
 //! The loops over squares: for each kernel, number of channels and kind of level one that is compiled for several instruction sets.
 
 use super::job::Job;
-use super::pairs::{area, linear};
+use super::pairs::{area, linear, linear_by_channels};
 use super::taps::taps;
 use crate::kernel::Kernel;
 use crate::picture::Sample;
@@ -39,7 +39,7 @@ macro_rules! sampled {
             loops! {
                 $level:
                 linear_grey = linear<1, 1, 2>;
-                linear_colour = linear<3, 4, 8>;
+                linear_colour = linear_by_channels<3>;
                 area_grey = area<1>;
                 area_colour = area<3>;
                 cubic_grey = taps<1, 4, 4>;

@@ -13,26 +13,33 @@ pub(super) fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: u
     let (across, vertical) = (job.weights.across.of::<LANES>(), job.weights.down.of::<ROWS>());
     let (mut run, width, mut left) = (Run::EMPTY, job.width(), 0);
     let (mut sums, mut begins) = ([[0.0_f32; LANES]; SIDE], [0; SIDE]);
+    let (before, stride) = ((ROWS / 2 - 1) as i32, job.picture.size.width as usize * CH);
     for cell in job.cells {
+        let whole = job.window_of_cell::<CH>(cell, before, [LANES, ROWS]);
         for row in 0..cell.size[1] {
             let begin = (row * width + left) * CH;
             let Some(into) = into.get_mut(begin..begin + cell.size[0] * CH) else { return };
-            job.run(cell, row, [0.0; 2], &mut run);
-            if !cell.is_full() && run.is_outside() {
-                into.fill(T::default());
-                continue;
-            }
+            let window = if let Some(whole) = &whole {
+                job.run_inside(cell, row, &mut run);
+                whole.begins::<CH>(&run, stride, &mut begins);
+                Some(whole.levels)
+            } else {
+                job.run(cell, row, [0.0; 2], &mut run);
+                if !cell.is_full() && run.is_outside() {
+                    into.fill(T::default());
+                    continue;
+                }
+                job.window::<CH>(&run, before, [LANES, ROWS], &mut begins)
+            };
             let (mut right, mut down) = ([(0, 0.0); SIDE], [(0, 0.0); SIDE]);
             for i in 0..SIDE {
                 right[i] = step(run.right[i]);
                 down[i] = step(run.down[i]);
             }
-            let before = (ROWS / 2 - 1) as i32;
-            let window = job.window::<CH>(&run, before, [LANES, ROWS], &mut begins);
             for i in 0..SIDE {
                 let mut lines = [[T::default(); LANES]; ROWS];
                 match window {
-                    Some(window) => copy(window, begins[i] as usize, job.picture.size.width as usize * CH, &mut lines),
+                    Some(window) => copy(window, begins[i] as usize, stride, &mut lines),
                     None if run.inside[i] && i < run.count => {
                         for (tap, line) in (0..).zip(&mut lines) {
                             job.mirrored_line::<CH>(run.column[i] - before, run.row[i] - before + tap, line);
@@ -53,7 +60,7 @@ pub(super) fn taps<T: Sample, const CH: usize, const ROWS: usize, const LANES: u
             }
             // Of runs that are inside as a whole nothing is to be left out.
             for i in 0..SIDE {
-                if !run.inside[i] {
+                if whole.is_none() && !run.inside[i] {
                     sums[i] = [0.0; LANES];
                 }
             }
