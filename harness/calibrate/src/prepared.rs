@@ -44,6 +44,8 @@ pub struct Prepared {
     pub unmeasured: LostRows,
     /// Points of a reconstruction that take no part, since their rays are as good as parallel.
     pub far: Vec<String>,
+    /// What is to be known of how it was prepared, in words: no doubts.
+    pub notes: Vec<String>,
     /// Start values were given for everything, and are not to be looked for.
     pub(crate) is_given: bool,
 }
@@ -85,6 +87,7 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         left_out,
         unmeasured: LostRows::default(),
         far: Vec::new(),
+        notes: Vec::new(),
         is_given: false,
     })
 }

@@ -130,6 +130,7 @@ pub fn prepare_reconstruction(
             left_out,
             unmeasured: LostRows::default(),
             far: Vec::new(),
+            notes: rigs_set_free(reconstruction, &images),
             is_given: true,
         },
     })
@@ -293,6 +294,22 @@ fn known(names: &[String], camera: &Camera, of: &str) -> Result<Vec<String>, Cal
             Err(CalibrationError::Reconstruction { why })
         }
     }
+}
+
+/// What is to be said of cameras that the tool took as a rig: here each image has a pose of its own.
+fn rigs_set_free(reconstruction: &Reconstruction, images: &HashSet<usize>) -> Vec<String> {
+    let used: HashSet<usize> = images.iter().map(|&image| reconstruction.images[image].camera).collect();
+    let words = |rig: &Vec<usize>| {
+        let cameras = rig.iter().filter(|camera| used.contains(camera));
+        let names: Vec<String> = cameras.map(|&camera| reconstruction.cameras[camera].named.name.clone()).collect();
+        (names.len() > 1).then(|| {
+            format!(
+                "the file has cameras {} as a rig; here they are not: each image is adjusted with a pose of its own, and relative poses may differ from moment to moment",
+                few(&names)
+            )
+        })
+    };
+    reconstruction.rigs.iter().filter_map(words).collect()
 }
 
 /// What the model of a camera is called for [`crate::MODELS`].

@@ -57,6 +57,7 @@ fn ring(noise: f64) -> (Reconstruction, Vec<Camera>) {
         images: poses.iter().enumerate().map(image).collect(),
         points: points.iter().enumerate().map(point).collect(),
         sights,
+        rigs: Vec::new(),
         notes: Vec::new(),
     };
     (reconstruction, truth)
@@ -85,6 +86,18 @@ fn exact_sights_give_the_cameras_that_took_them() {
     let counts = adjusted.solution.counts();
     // Ten poses and lenses of three parameters, sixty points; seven of the frame are held.
     assert_eq!((counts.observations(), counts.unknowns, counts.constraints), (1200 + 7, 90 + 180, 7));
+}
+
+/// Each image has a pose of its own, and that is said of cameras that the tool took as a rig.
+#[test]
+fn cameras_of_a_rig_are_named_as_no_rig() {
+    let (mut reconstruction, _) = ring(0.0);
+    assert!(prepared(&reconstruction, Behind::Count).prepared.notes.is_empty());
+    reconstruction.rigs = vec![vec![3, 1], vec![0, 2, 4]];
+    // Camera 1 has no image that takes part: camera 3 is then alone.
+    reconstruction.sights.retain(|sight| sight.image != 1);
+    let notes = prepared(&reconstruction, Behind::Count).prepared.notes;
+    assert!(notes.len() == 1 && notes[0].starts_with("the file has cameras c0, c2, c4 as a rig; here they are not"), "{notes:?}");
 }
 
 /// A sight whose point is on the other side of the camera: the mirrored ray gives the same pixel, and the adjustment is the one of a camera that looks the other way.

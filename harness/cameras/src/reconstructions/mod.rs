@@ -3,6 +3,7 @@
 mod bal;
 mod bundler;
 mod colmap;
+mod colmap_rigs;
 mod colmap_written;
 mod lens;
 mod openmvg;

@@ -57,6 +57,9 @@ impl Calibrate {
         let solved = self.cameras.common_solve().map_or(Solved::Lens, Solved::Named);
         let settings: Settings = self.settings_of(Vec::new(), None)?;
         let found = prepare_reconstruction(&reconstruction, (&solved, behind), &settings)?;
+        if self.answered.json {
+            found.prepared.notes.iter().for_each(|note| say!("{note}"));
+        }
         let doubts = found.doubts(behind);
         calibrate(&found.prepared, &sets(&self.compare)?, |calibration| {
             doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
