@@ -1,8 +1,8 @@
 //! From points and control to a network with start values.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use calibench_adjust::Network;
+use calibench_adjust::{Network, Reached};
 use calibench_model::camera::Camera;
 use calibench_model::{ControlRow, LostRows, Points};
 
@@ -48,6 +48,8 @@ pub struct Prepared {
     pub notes: Vec<String>,
     /// Start values were given for everything, and are not to be looked for.
     pub(crate) is_given: bool,
+    /// Where the adjustment goes on, once far points were looked for.
+    pub(crate) reached: OnceLock<Reached>,
 }
 
 /// Joins points with control and finds start values for everything.
@@ -89,6 +91,7 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         far: Vec::new(),
         notes: Vec::new(),
         is_given: false,
+        reached: OnceLock::new(),
     })
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use calibench_adjust::{Exterior, ObjectPoint, Use};
 use calibench_diagnostics::nearest;
@@ -132,6 +132,7 @@ pub fn prepare_reconstruction(
             far: Vec::new(),
             notes: rigs_set_free(reconstruction, &images),
             is_given: true,
+            reached: OnceLock::new(),
         },
     })
 }
