@@ -14,7 +14,7 @@ mod whole;
 pub use calibration::{RigCalibration, RigCamera};
 pub use doubted::{RigDoubt, RigSubject};
 pub use held::Held;
-pub use leave_out::{BySets, Scatter};
+pub use leave_out::{BySets, Scatter, motion};
 pub use one_rig::OneRig;
 pub use pairing::{Moments, Pairing, Spread, TimedImage};
 pub use prepared::{RigPrepared, RigSettings, prepare_rig};

@@ -11,7 +11,7 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
-pub use study::{Adjustment, Blocks, Study, Systems};
+pub use study::{Adjustment, Blocks, Networks, Study, Systems};
 pub use sweep::{Axis, Cell, Sweep, Value};
 pub use views::{Role, Room, Station, Target, Views};
 
