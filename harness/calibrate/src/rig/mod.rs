@@ -9,6 +9,7 @@ mod one_rig;
 mod pairing;
 mod prepared;
 mod start;
+mod still;
 mod whole;
 
 pub use calibration::{RigCalibration, RigCamera};
@@ -18,4 +19,5 @@ pub use leave_out::{BySets, Scatter, motion};
 pub use one_rig::OneRig;
 pub use pairing::{Moments, Pairing, Spread, TimedImage};
 pub use prepared::{RigPrepared, RigSettings, prepare_rig};
+pub use still::{Known, Stand, Still, still_stands};
 pub use whole::calibrate_rig;

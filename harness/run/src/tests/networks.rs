@@ -70,7 +70,7 @@ fn a_precision_that_is_wrong_shows_in_the_cost_alone() {
     assert!((squares[0] / squares[1] - 1.0).abs() < 1e-4, "{squares:?}");
 }
 
-/// Coordinates are those of each camera where its mount has it: a rig whose mounts are read otherwise than the adjustment means them is no rig.
+/// A model that the true camera has no parameters of has no truth.
 #[test]
 fn a_camera_that_is_none_of_the_model_is_said() {
     if !there() {
