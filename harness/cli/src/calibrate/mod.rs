@@ -34,6 +34,8 @@ mod reconstruction;
 mod rig;
 
 use cameras::Cameras;
+pub use photographs::corners;
+pub use rig::{patterns, places, rig_names};
 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
