@@ -130,7 +130,7 @@ pub fn prepare_reconstruction(
             left_out,
             unmeasured: LostRows::default(),
             far: Vec::new(),
-            notes: rigs_set_free(reconstruction, &images),
+            notes: Vec::new(),
             is_given: true,
             reached: OnceLock::new(),
         },
@@ -138,6 +138,22 @@ pub fn prepare_reconstruction(
 }
 
 impl Reconstructed {
+    /// Notes which cameras the tool took as mounted rigidly to each other, of each such rig their indices in the reconstruction: here each image has a pose of its own.
+    pub fn note_rigs(&mut self, reconstruction: &Reconstruction, rigs: &[Vec<usize>]) {
+        let is_used = |name: &String| self.prepared.settings.cameras.iter().any(|optics| optics.name == *name);
+        let words = |rig: &Vec<usize>| {
+            let names = rig.iter().map(|&camera| reconstruction.cameras[camera].named.name.clone());
+            let names: Vec<String> = names.filter(is_used).collect();
+            (names.len() > 1).then(|| {
+                format!(
+                    "the file has cameras {} as a rig; here they are not: each image is adjusted with a pose of its own, and relative poses may differ from moment to moment",
+                    few(&names)
+                )
+            })
+        };
+        self.prepared.notes = rigs.iter().filter_map(words).collect();
+    }
+
     /// What is in doubt of the reconstruction itself, in words.
     pub fn doubts(&self, behind: Behind) -> Vec<String> {
         let what = match behind {
@@ -295,22 +311,6 @@ fn known(names: &[String], camera: &Camera, of: &str) -> Result<Vec<String>, Cal
             Err(CalibrationError::Reconstruction { why })
         }
     }
-}
-
-/// What is to be said of cameras that the tool took as a rig: here each image has a pose of its own.
-fn rigs_set_free(reconstruction: &Reconstruction, images: &HashSet<usize>) -> Vec<String> {
-    let used: HashSet<usize> = images.iter().map(|&image| reconstruction.images[image].camera).collect();
-    let words = |rig: &Vec<usize>| {
-        let cameras = rig.iter().filter(|camera| used.contains(camera));
-        let names: Vec<String> = cameras.map(|&camera| reconstruction.cameras[camera].named.name.clone()).collect();
-        (names.len() > 1).then(|| {
-            format!(
-                "the file has cameras {} as a rig; here they are not: each image is adjusted with a pose of its own, and relative poses may differ from moment to moment",
-                few(&names)
-            )
-        })
-    };
-    reconstruction.rigs.iter().filter_map(words).collect()
 }
 
 /// What the model of a camera is called for [`crate::MODELS`].

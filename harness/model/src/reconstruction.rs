@@ -15,8 +15,6 @@ pub struct Reconstruction {
     pub points: Vec<TiePoint>,
     /// Where images show them, in the file's order.
     pub sights: Vec<TieSight>,
-    /// Cameras that the tool took as mounted rigidly to each other: of each such rig, the indices of its cameras, two or more.
-    pub rigs: Vec<Vec<usize>>,
     /// What the user should know: what was assumed, what was left out.
     pub notes: Vec<String>,
 }

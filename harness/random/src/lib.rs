@@ -51,8 +51,6 @@ pub enum Purpose {
     LeftOut = 63,
     /// The order in which points are shown to a method from outside.
     Shown = 64,
-    /// The error of a measured distance.
-    Distance = 66,
     /// Which image points are in gross error or exchanged, and by how much.
     Gross = 65,
 }

@@ -58,7 +58,6 @@ fn ring(noise: f64) -> (Reconstruction, Vec<Camera>) {
         images: poses.iter().enumerate().map(image).collect(),
         points: points.iter().enumerate().map(point).collect(),
         sights,
-        rigs: Vec::new(),
         notes: Vec::new(),
     };
     (reconstruction, truth)
@@ -93,11 +92,12 @@ fn exact_sights_give_the_cameras_that_took_them() {
 #[test]
 fn cameras_of_a_rig_are_named_as_no_rig() {
     let (mut reconstruction, _) = ring(0.0);
-    assert!(prepared(&reconstruction, Behind::Count).prepared.notes.is_empty());
-    reconstruction.rigs = vec![vec![3, 1], vec![0, 2, 4]];
     // Camera 1 has no image that takes part: camera 3 is then alone.
     reconstruction.sights.retain(|sight| sight.image != 1);
-    let notes = prepared(&reconstruction, Behind::Count).prepared.notes;
+    let mut found = prepared(&reconstruction, Behind::Count);
+    assert!(found.prepared.notes.is_empty());
+    found.note_rigs(&reconstruction, &[vec![3, 1], vec![0, 2, 4]]);
+    let notes = &found.prepared.notes;
     assert!(notes.len() == 1 && notes[0].starts_with("the file has cameras c0, c2, c4 as a rig; here they are not"), "{notes:?}");
 }
 

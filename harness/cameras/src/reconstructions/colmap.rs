@@ -8,7 +8,7 @@ use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoi
 use calibench_model::{CornerPoint, Reconstruction};
 use nalgebra::Point3;
 
-use super::{LARGEST, colmap_rigs, lens, oriented};
+use super::{LARGEST, ReconstructionFile, colmap_rigs, lens, oriented};
 use crate::colmap_images::{self, Image, head_in_bytes, in_text, lines_with_points, of_image};
 use crate::formats::{colmap, colmap_bin};
 use crate::little_endian::Bytes;
@@ -51,7 +51,7 @@ fn parsed<T>(folder: &Path, name: &str, read: impl FnOnce(&[u8], bool) -> Result
     read(&bytes, is_binary).map_err(|error| error.in_file(&path.display().to_string()))
 }
 
-pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruction, CameraFileError> {
+pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<ReconstructionFile, CameraFileError> {
     let options = ReadOptions { size, ..ReadOptions::default() };
     let cameras = parsed(folder, PARTS[0], |bytes, is_binary| cameras(bytes, is_binary, &options))?;
     let (points, places) = parsed(folder, PARTS[2], points)?;
@@ -77,10 +77,11 @@ pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruct
         out_of(bytes, is_binary, &mut take)
     })?;
     let ids: HashMap<u32, usize> = by_id.iter().filter_map(|(id, place)| Some((id.parse().ok()?, *place))).collect();
+    let mut rigs = Vec::new();
     match colmap_rigs::read(folder) {
-        Ok(rigs) => {
+        Ok(found) => {
             let known = |rig: Vec<u32>| rig.into_iter().filter_map(|id| ids.get(&id).copied()).collect::<Vec<_>>();
-            out.rigs = rigs.into_iter().map(known).filter(|rig| rig.len() > 1).collect();
+            rigs = found.into_iter().map(known).filter(|rig| rig.len() > 1).collect();
         }
         // Nothing that is adjusted stands there.
         Err(error) => out.notes.push(format!("{error}: whether cameras are a rig is not known")),
@@ -88,7 +89,7 @@ pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruct
     if unknown > 0 {
         out.notes.push(format!("{unknown} image points were left out, whose points are not in points3D"));
     }
-    Ok(out)
+    Ok(ReconstructionFile { tool: "COLMAP", reconstruction: out, rigs })
 }
 
 fn cameras(bytes: &[u8], is_binary: bool, options: &ReadOptions) -> Result<Vec<ReconstructedCamera>, CameraFileError> {

@@ -289,8 +289,8 @@ fn cameras_that_colmap_took_as_a_rig_are_known() {
     let cameras: String = [7, 9, 4, 5].iter().map(|id| format!("{id} SIMPLE_PINHOLE 800 600 700 400 300\n")).collect();
     std::fs::write(folder.path().join("cameras.txt"), cameras).unwrap();
     let rigs = || {
-        let found = read_reconstruction(folder.path(), None).unwrap().reconstruction;
-        (found.rigs, found.notes)
+        let found = read_reconstruction(folder.path(), None).unwrap();
+        (found.rigs, found.reconstruction.notes)
     };
     assert_eq!(rigs(), (Vec::new(), Vec::new()));
     let pose = "0.5 0.5 0.5 0.5 1 2 3";

@@ -29,8 +29,9 @@ pub(super) fn figures(trial: &Trial<'_>, distances: &[Bar], asked: &[[usize; 2]]
 /// A distance as it is measured in the trial of `key`.
 fn measured(trial: &Trial<'_>, targets: [String; 2], sigma: f64, key: Key<'_>) -> Option<MeasuredDistance> {
     let [from, to] = targets.each_ref().map(|name| trial.target(name));
+    // It is a part of the trial's survey, beside its points.
     let name = targets.join(" ");
-    let error: f64 = StandardNormal.sample(&mut stream(Key { view: "", target: &name, ..key }, Purpose::Distance));
+    let error: f64 = StandardNormal.sample(&mut stream(Key { view: "", target: &name, ..key }, Purpose::Control));
     Some(MeasuredDistance { value: (to? - from?).norm() + sigma * error, sigma, targets })
 }
 
