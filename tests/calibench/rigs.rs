@@ -89,7 +89,10 @@ fn a_rig_is_judged_against_its_file() {
     let (code, text, error) = judged("before.yaml", &["--json"]);
     let found: Value = serde_json::from_str(&text).unwrap_or_else(|_| panic!("{text}{error}"));
     let right = &found["cameras"][0];
-    assert_eq!((code, &found["command"], &right["verdict"], &right["name"]), (Some(1), &"judge-rig".into(), &"moved".into(), &"right".into()));
+    assert_eq!(
+        (code, &found["command"], &right["verdict"], &right["name"]),
+        (Some(1), &"judge-rig".into(), &"moved".into(), &"right".into())
+    );
     let value = |key: &str| right[key]["value"].as_f64().unwrap();
     assert!((value("moved") - 0.002).abs() < 2e-4, "{right}");
     for (more, message) in [

@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 
 use calibench_adjust::{
-    Covariances, Found, Network, Options, Reliability, Significance, Solution, Status, Test, Variance, adjust, adjust_on, adjust_robustly, snoop,
+    Covariances, Found, Network, Options, Reliability, Significance, Solution, Status, Test, Variance, adjust, adjust_on, adjust_robustly,
+    snoop,
 };
 use calibench_model::NamedCamera;
 use calibench_model::camera::Camera;
@@ -95,7 +96,8 @@ impl Prepared {
             }
             GrossErrors::Sought | GrossErrors::Kept => {
                 let reached = self.reached.get().cloned();
-                let solution = reached.map_or_else(|| adjust(&self.network, &options), |reached| adjust_on(&self.network, &options, reached));
+                let solution =
+                    reached.map_or_else(|| adjust(&self.network, &options), |reached| adjust_on(&self.network, &options, reached));
                 (solution?, Vec::new(), None)
             }
         })

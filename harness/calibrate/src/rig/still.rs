@@ -64,10 +64,12 @@ impl Stand {
         // What the noise makes of no motion at all is as large as its standard deviation.
         let Known { value, sigma } = self.px;
         let net = (value * value - sigma * sigma).max(0.0).sqrt();
-        match () {
-            () if net + TIMES * sigma <= margin_px => Still::Stands,
-            () if net - TIMES * sigma > margin_px && self.p < ALPHA => Still::Moved,
-            () => Still::CannotTell,
+        if net + TIMES * sigma <= margin_px {
+            Still::Stands
+        } else if net - TIMES * sigma > margin_px && self.p < ALPHA {
+            Still::Moved
+        } else {
+            Still::CannotTell
         }
     }
 }

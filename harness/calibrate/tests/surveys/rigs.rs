@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use calibench_adjust::mounted;
-use calibench_calibrate::rig::{Pairing, RigPrepared, RigSettings, RigSubject, Still, TimedImage, calibrate_rig, prepare_rig, still_stands};
+use calibench_calibrate::rig::{
+    Pairing, RigPrepared, RigSettings, RigSubject, Still, TimedImage, calibrate_rig, prepare_rig, still_stands,
+};
 use calibench_calibrate::{CalibrationError, GrossErrors, Optics, Settings};
 use calibench_exchange::control::parse_control;
 use calibench_exchange::points::parse_points;

@@ -55,7 +55,8 @@ fn in_text(text: &str) -> Result<Vec<Vec<u32>>, CameraFileError> {
 
 fn of_line(line: &str) -> Result<Vec<u32>, CameraFileError> {
     let mut words = line.split_whitespace();
-    let mut next = |what: &str| words.next().ok_or_else(|| CameraFileError::new("expected another word, found the end of the line").of(what));
+    let mut next =
+        |what: &str| words.next().ok_or_else(|| CameraFileError::new("expected another word, found the end of the line").of(what));
     let whole = |what: &str, word: &str| {
         let wrong = |_| CameraFileError::new(format!("expected a whole number, found `{}`", shortened(word))).of(what);
         word.parse::<u32>().map_err(wrong)

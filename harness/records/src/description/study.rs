@@ -170,6 +170,18 @@ impl From<Study> for Subject {
             }
         };
         let Views { size, unit, extent, normal, stations, targets, room } = *views;
-        Self::Views(Box::new(WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, networks, room }))
+        Self::Views(Box::new(WrittenViews {
+            size,
+            unit,
+            extent,
+            normal,
+            stations,
+            targets,
+            adjustment,
+            blocks,
+            calibrators,
+            networks,
+            room,
+        }))
     }
 }

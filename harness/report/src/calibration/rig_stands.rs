@@ -16,7 +16,9 @@ pub fn rig_stands(found: &RigCalibration<'_>, stands: &[Stand], (distance, margi
         let verdict = match stand.verdict(margin_px) {
             Still::Stands => format!("{name} stands as it did against {origin}, up to {} px", plain(margin_px)),
             Still::Moved => format!("{name} has moved against {origin}, by more than {} px", plain(margin_px)),
-            Still::CannotTell => format!("{name}: these images do not tell whether it moved against {origin} by more than {} px", plain(margin_px)),
+            Still::CannotTell => {
+                format!("{name}: these images do not tell whether it moved against {origin} by more than {} px", plain(margin_px))
+            }
         };
         let _ = writeln!(
             text,

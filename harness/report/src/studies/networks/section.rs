@@ -32,10 +32,20 @@ pub fn text(found: &Summaries, told: &description::Networks) -> String {
 fn kind(told: &description::Networks) -> String {
     let model = &told.model;
     match (&told.mounts[..], told.distances.len()) {
-        ([], 0) => format!("Free networks of one camera ({model}), from image points alone: targets have no coordinates, and nothing tells the scale."),
-        ([], 1) => format!("Free networks of one camera ({model}), from image points and one measured distance: targets have no coordinates."),
-        ([], count) => format!("Free networks of one camera ({model}), from image points and {count} measured distances: targets have no coordinates."),
-        (mounts, _) => format!("Rigs of {} cameras (each {model}), {}, before known targets: interiors and mounts from nothing.", mounts.len(), mounts.join(", ")),
+        ([], 0) => format!(
+            "Free networks of one camera ({model}), from image points alone: targets have no coordinates, and nothing tells the scale."
+        ),
+        ([], 1) => {
+            format!("Free networks of one camera ({model}), from image points and one measured distance: targets have no coordinates.")
+        }
+        ([], count) => {
+            format!("Free networks of one camera ({model}), from image points and {count} measured distances: targets have no coordinates.")
+        }
+        (mounts, _) => format!(
+            "Rigs of {} cameras (each {model}), {}, before known targets: interiors and mounts from nothing.",
+            mounts.len(),
+            mounts.join(", ")
+        ),
     }
 }
 
@@ -71,15 +81,14 @@ fn statements(found: &Summaries) -> String {
     let mut rows = MarkdownTable::new(&header);
     for method in &found.methods {
         let of = |quantity: Quantity| found.get(method, quantity).map(|summary| &summary.value);
-        let mean = |quantity: Quantity| {
-            of(quantity).and_then(|value| Some(with_half(value.mean()?, value.half(), 4))).unwrap_or_default()
-        };
+        let mean = |quantity: Quantity| of(quantity).and_then(|value| Some(with_half(value.mean()?, value.half(), 4))).unwrap_or_default();
         let share = |quantity: Quantity| {
-            of(quantity).and_then(|value| Some(with_half(100.0 * value.mean()?, value.half().map(|half| 100.0 * half), 2))).unwrap_or_default()
+            of(quantity)
+                .and_then(|value| Some(with_half(100.0 * value.mean()?, value.half().map(|half| 100.0 * half), 2)))
+                .unwrap_or_default()
         };
-        let count = |quantity: Quantity| {
-            of(quantity).and_then(|value| Some(fixed(value.mean()? * value.count as f64, 0))).unwrap_or_default()
-        };
+        let count =
+            |quantity: Quantity| of(quantity).and_then(|value| Some(fixed(value.mean()? * value.count as f64, 0))).unwrap_or_default();
         let failed = found.failed.iter().find(|((other, ..), _)| other == method).map(|(_, (count, why))| format!("{count}: {why}"));
         rows.row([
             format!("`{method}`"),
@@ -115,7 +124,11 @@ fn parameters(found: &Summaries) -> String {
     }
     let mut out = String::new();
     if any {
-        let _ = writeln!(out, "{}\nStandard deviations as the adjustments state them (root mean) beside the errors that there are.\n", rows.render());
+        let _ = writeln!(
+            out,
+            "{}\nStandard deviations as the adjustments state them (root mean) beside the errors that there are.\n",
+            rows.render()
+        );
     }
     out
 }
@@ -128,5 +141,9 @@ fn stated_and_error(name: &FigureName, summary: &Summary) -> Option<[f64; 2]> {
 
 /// Three significant digits.
 fn digits(value: f64) -> String {
-    if (1e-3..1e4).contains(&value) { format!("{value:.*}", (2.0 - value.log10().floor()).max(0.0) as usize) } else { format!("{value:.2e}") }
+    if (1e-3..1e4).contains(&value) {
+        format!("{value:.*}", (2.0 - value.log10().floor()).max(0.0) as usize)
+    } else {
+        format!("{value:.2e}")
+    }
 }

@@ -44,8 +44,7 @@ fn of(trial: &Trial<'_>, mounts: &[Mount], found: &RigCalibration<'_>) -> Result
     let covariances = &found.covariances;
     let mut errors = DVector::zeros(covariances.kept.nrows());
     for (row, (camera, name)) in covariances.parameters.iter().enumerate() {
-        errors[row] =
-            trial.error(&found.solution.cameras()[*camera], name).ok_or("the model has other parameters than [camera]")?;
+        errors[row] = trial.error(&found.solution.cameras()[*camera], name).ok_or("the model has other parameters than [camera]")?;
     }
     let (unit, mut bases) = (trial.subject.unit.name(), Vec::new());
     for (camera, own) in mounts.iter().enumerate() {

@@ -34,7 +34,8 @@ whole_pixels = false
 [[method]]
 name = "pixel"
 "#;
-const FREE: &str = "[free_network]\nmodel = \"opencv5\"\nnoise_px = 0.1\nlengths = 3\n[[distance]]\nbetween = [\"r1c1\", \"r1c9\"]\nsigma = 0.02\n";
+const FREE: &str =
+    "[free_network]\nmodel = \"opencv5\"\nnoise_px = 0.1\nlengths = 3\n[[distance]]\nbetween = [\"r1c1\", \"r1c9\"]\nsigma = 0.02\n";
 const RIG: &str = "[rig]\nmodel = \"opencv5\"\nnoise_px = 0.1\nsigma_px = 0.2\n[[mount]]\nname = \"left\"\n[[mount]]\nname = \"right\"\nat = [120, 0, 5]\nangles = [0, 10, 0]\n";
 
 fn views(text: &str) -> Result<ViewsSubject, String> {
