@@ -222,7 +222,7 @@ impl Calibrate {
             (_, _, Some(board)) => {
                 let finder = finder(board)?.of_each(self.all);
                 let (Corners { points, lost, photos, doubts }, reading) =
-                    photographs::corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
+                    corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
                 Ok(Input { points, lost, photos, reading, control: finder.control(), is_free: false, doubts })
             }
