@@ -69,6 +69,46 @@ fn two_cameras_on_a_bar_are_where_they_are() {
     assert!(again.iter().zip(position).all(|(a, b)| (a - b).abs() < 1e-6), "{again:?} {position:?}");
 }
 
+/// The same images against the rig that they gave stand; against one whose right camera sat 2 mm further off they have moved.
+#[test]
+fn a_rig_is_judged_against_its_file() {
+    let folder = example();
+    assert_eq!(answer(folder.path(), &["--json", "-o", "rig"]).0, Some(0));
+    let judged = |file: &str, more: &[&str]| {
+        let rig = ["judge", "--camera", file, "--distance", "1"];
+        let output = run(folder.path(), &[&rig[..], &RIG[1..], more].concat());
+        (output.status.code(), stdout(&output), stderr(&output))
+    };
+    let (code, text, error) = judged("rig/stereo-left-right.yml", &[]);
+    assert!(code == Some(0) && text.contains("right stands as it did against left, up to 1 px"), "{code:?} {text}{error}");
+    let chain = std::fs::read_to_string(folder.path().join("rig/camchain.yaml")).unwrap();
+    let x = chain.lines().find(|line| line.contains("- [") && line.contains("0.9")).unwrap_or_else(|| panic!("{chain}"));
+    let last: f64 = x.rsplit_once(',').unwrap().1.trim_end_matches([']', ' ']).trim().parse().unwrap();
+    let moved = x.replacen(x.rsplit_once(',').unwrap().1, &format!(" {}]", last + 0.002), 1);
+    std::fs::write(folder.path().join("before.yaml"), chain.replacen(x, &moved, 1)).unwrap();
+    let (code, text, error) = judged("before.yaml", &["--json"]);
+    let found: Value = serde_json::from_str(&text).unwrap_or_else(|_| panic!("{text}{error}"));
+    let right = &found["cameras"][0];
+    assert_eq!(
+        (code, &found["command"], &right["verdict"], &right["name"]),
+        (Some(1), &"judge-rig".into(), &"moved".into(), &"right".into())
+    );
+    let value = |key: &str| right[key]["value"].as_f64().unwrap();
+    assert!((value("moved") - 0.002).abs() < 2e-4, "{right}");
+    for (more, message) in [
+        (&["--rig", "left"][..], "--rig: expected the names of two cameras or more"),
+        (&["--sync", "left*.png"][..], "has 1 patterns; expected one for each of left, right"),
+        (&["--camera", "rig/left.yaml"][..], "holds 1 cameras that have other names than the 2 of the rig"),
+    ] {
+        let keeps = |word: &str| !more.contains(&word);
+        let mut words: Vec<&str> = vec!["judge"];
+        let all = [&["--camera", "before.yaml", "--distance", "1"][..], &RIG[1..]].concat();
+        all.chunks(2).filter(|pair| keeps(pair[0])).for_each(|pair| words.extend(pair));
+        let output = run(folder.path(), &[&words[..], more].concat());
+        assert!(output.status.code() == Some(2) && stderr(&output).contains(message), "{message}: {}", stderr(&output));
+    }
+}
+
 #[test]
 fn times_pair_as_names_do() {
     let folder = example();

@@ -1,8 +1,8 @@
 //! From points and control to a network with start values.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use calibench_adjust::Network;
+use calibench_adjust::{Network, Reached};
 use calibench_model::camera::Camera;
 use calibench_model::{ControlRow, LostRows, Points};
 
@@ -44,8 +44,12 @@ pub struct Prepared {
     pub unmeasured: LostRows,
     /// Points of a reconstruction that take no part, since their rays are as good as parallel.
     pub far: Vec<String>,
+    /// What is to be known of how it was prepared, in words: no doubts.
+    pub notes: Vec<String>,
     /// Start values were given for everything, and are not to be looked for.
     pub(crate) is_given: bool,
+    /// Where the adjustment goes on, once far points were looked for.
+    pub(crate) reached: OnceLock<Reached>,
 }
 
 /// Joins points with control and finds start values for everything.
@@ -85,7 +89,9 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         left_out,
         unmeasured: LostRows::default(),
         far: Vec::new(),
+        notes: Vec::new(),
         is_given: false,
+        reached: OnceLock::new(),
     })
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use calibench_adjust::{Exterior, ObjectPoint, Use};
 use calibench_diagnostics::nearest;
@@ -130,12 +130,30 @@ pub fn prepare_reconstruction(
             left_out,
             unmeasured: LostRows::default(),
             far: Vec::new(),
+            notes: Vec::new(),
             is_given: true,
+            reached: OnceLock::new(),
         },
     })
 }
 
 impl Reconstructed {
+    /// Notes which cameras the tool took as mounted rigidly to each other, of each such rig their indices in the reconstruction: here each image has a pose of its own.
+    pub fn note_rigs(&mut self, reconstruction: &Reconstruction, rigs: &[Vec<usize>]) {
+        let is_used = |name: &String| self.prepared.settings.cameras.iter().any(|optics| optics.name == *name);
+        let words = |rig: &Vec<usize>| {
+            let names = rig.iter().map(|&camera| reconstruction.cameras[camera].named.name.clone());
+            let names: Vec<String> = names.filter(is_used).collect();
+            (names.len() > 1).then(|| {
+                format!(
+                    "the file has cameras {} as a rig; here they are not: each image is adjusted with a pose of its own, and relative poses may differ from moment to moment",
+                    few(&names)
+                )
+            })
+        };
+        self.prepared.notes = rigs.iter().filter_map(words).collect();
+    }
+
     /// What is in doubt of the reconstruction itself, in words.
     pub fn doubts(&self, behind: Behind) -> Vec<String> {
         let what = match behind {

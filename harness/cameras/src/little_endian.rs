@@ -100,6 +100,10 @@ impl<R: Stream> Bytes<R> {
         Ok(bytes)
     }
 
+    pub fn u8(&mut self) -> Result<u8, CameraFileError> {
+        self.array().map(u8::from_le_bytes)
+    }
+
     pub fn u32(&mut self) -> Result<u32, CameraFileError> {
         self.array().map(u32::from_le_bytes)
     }

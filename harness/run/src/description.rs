@@ -12,8 +12,9 @@ use calibench_records::description::{
     operator,
 };
 use calibench_scenario::studies::network::CheckPlan;
+use calibench_scenario::studies::networks::Kind;
 use calibench_scenario::studies::printed::{NETWORK, SENSOR};
-use calibench_scenario::{Blocks, Printed, Scenario, Study, Subject, Sweep, ViewsSubject};
+use calibench_scenario::{Blocks, Networks, Printed, Scenario, Study, Subject, Sweep, ViewsSubject};
 use calibench_synth::stations::Station;
 use calibench_synth::view::View;
 
@@ -124,8 +125,19 @@ fn of_views(subject: &ViewsSubject) -> description::Study {
         }
         Study::Blocks(plan) => description::Study::Blocks(views, in_blocks(subject, plan)),
         Study::Calibrators(plan) => description::Study::Calibrators(views, Systems { model: plan.model.clone(), sigma_px: plan.sigma_px }),
+        Study::Networks(plan) => description::Study::Networks(views, of_networks(subject, plan)),
         Study::Transfer { .. } => description::Study::Transfer(views),
     }
+}
+
+fn of_networks(subject: &ViewsSubject, plan: &Networks) -> description::Networks {
+    let name = |target: usize| subject.field.targets[target].id.clone();
+    let distances = match &plan.kind {
+        Kind::Free { distances, .. } => distances.iter().map(|bar| bar.between.map(name)).collect(),
+        Kind::Rig(_) => Vec::new(),
+    };
+    let mounts = plan.mounts().iter().map(|mount| mount.name.clone()).collect();
+    description::Networks { model: plan.model.clone(), sigma_px: plan.sigma_px, mounts, distances }
 }
 
 fn views(subject: &ViewsSubject) -> Views {

@@ -7,7 +7,7 @@ use crate::sweep::Sweep;
 
 const FIELD: &str = "testfield";
 /// Tables that say what is pictured beside it.
-const PICTURED: [&str; 6] = ["scene", "figure", "photographs", "camera", "stations", "station"];
+const PICTURED: [&str; 7] = ["scene", "figure", "photographs", "camera", "stations", "station", "mount"];
 const TRANSFER: &str = "transfer";
 /// Keys of these tables that say how much is drawn, how it becomes grey values, or what is done with it: whoever changes one of them alone draws the same numbers.
 const ASIDE: [&str; 11] =

@@ -41,6 +41,7 @@ pub use stations::StationPlan;
 pub use studies::StudyPlan;
 pub use studies::blocks::{Block, Blocks, ResidualPairs};
 pub use studies::network::Calibration;
+pub use studies::networks::Networks;
 pub use studies::printed::{Printed, Turned};
 pub use studies::recognition::Recognition;
 pub use studies::transfer::Transfer;

@@ -17,6 +17,7 @@ use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, Rand
 use super::studies::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
 use super::studies::calibrators::wire::{CalibratorWire, CalibratorsWire, FaultsWire};
 use super::studies::network::wire::{CalibrationWire, CheckWire};
+use super::studies::networks::wire::{DistanceWire, FreeNetworkWire, MountWire, RigWire};
 use super::studies::printed::wire as printed_wire;
 use super::studies::recognition::wire::{ImagesWire, RecognitionWire};
 use super::studies::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
@@ -60,6 +61,10 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["calibrators"] = table::<CalibratorsWire>();
     root["properties"]["calibrators"]["properties"]["faults"] = table::<FaultsWire>();
     root["properties"]["calibrator"] = list(&table::<CalibratorWire>());
+    root["properties"]["free_network"] = table::<FreeNetworkWire>();
+    root["properties"]["distance"] = list(&table::<DistanceWire>());
+    root["properties"]["rig"] = table::<RigWire>();
+    root["properties"]["mount"] = list(&table::<MountWire>());
     root["properties"]["recognition"] = table::<RecognitionWire>();
     root["properties"]["recognition"]["properties"]["images"] = list(&table::<ImagesWire>());
     root["properties"]["transfer"] = transfer();

@@ -1,10 +1,12 @@
 //! The tables that say what is recognised in views, and what is made of their points.
 
+use std::borrow::Cow;
+
 use calibench_diagnostics::Problem;
 use calibench_measure::Configured;
 
 use super::section::Section;
-use super::studies::{Seen, blocks, calibrators, network, recognition};
+use super::studies::{Seen, blocks, calibrators, network, networks, recognition};
 use super::subject::{Study, ViewsSubject};
 
 /// A study that has tables of its own beside those of the views.
@@ -23,7 +25,7 @@ struct Reader {
 type Tables<'i> = (Section<'i>, Vec<Section<'i>>);
 
 /// Those studies, of which a scenario has one at most. A new one is a line here.
-const READERS: [Reader; 3] = [
+const READERS: [Reader; 5] = [
     Reader {
         name: "[calibration]",
         table: ["calibration", "[calibration]"],
@@ -41,6 +43,20 @@ const READERS: [Reader; 3] = [
         table: ["calibrators", "[calibrators]"],
         list: Some((["calibrator", "[[calibrator]]"], "[calibrators] says `model`, `start_f` and `distance` for all calibrators")),
         read: |(table, list), _, methods, problems| Some(Study::Calibrators(Box::new(calibrators::read(table, list, methods, problems)?))),
+    },
+    Reader {
+        name: "[free_network]",
+        table: ["free_network", "[free_network]"],
+        list: Some((["distance", "[[distance]]"], "[free_network] says `model` and `noise_px`")),
+        read: |(table, list), seen, methods, problems| {
+            Some(Study::Networks(Box::new(networks::read_free(table, list, seen, methods, problems)?)))
+        },
+    },
+    Reader {
+        name: "[rig]",
+        table: ["rig", "[rig]"],
+        list: Some((["mount", "[[mount]]"], "[rig] says `model` and `noise_px` of all cameras")),
+        read: |(table, list), _, methods, problems| Some(Study::Networks(Box::new(networks::read_rig(table, list, methods, problems)?))),
     },
 ];
 
@@ -103,6 +119,7 @@ impl<'i> StudyTables<'i> {
             return None;
         };
         let study = (reader.read)((table, list), &seen, methods, problems)?;
-        Some(ViewsSubject { recognition, study, ..views })
+        let stations = study.cameras_at(Cow::Owned(views.stations)).into_owned();
+        Some(ViewsSubject { recognition, study, stations, ..views })
     }
 }

@@ -18,6 +18,7 @@ use crate::camera::LocalPlan;
 use crate::studies::blocks::Blocks;
 use crate::studies::calibrators::Calibrators;
 use crate::studies::network::Calibration;
+use crate::studies::networks::Networks;
 use crate::studies::printed::Printed;
 use crate::studies::recognition::{RECOGNITION, Recognition};
 use crate::studies::transfer::Transfer;
@@ -160,6 +161,8 @@ pub enum Study {
     Blocks(Box<Blocks>),
     /// Whole calibration systems are told them, and their cameras are scored.
     Calibrators(Box<Calibrators>),
+    /// Free networks and rigs are made of them, as `calibrate` adjusts them.
+    Networks(Box<Networks>),
     /// Nothing is measured: calibrations that are made elsewhere are applied here.
     Transfer {
         /// Which, and how.
@@ -177,6 +180,7 @@ impl Study {
             Self::Network(plan) => &**plan,
             Self::Blocks(plan) => &**plan,
             Self::Calibrators(plan) => &**plan,
+            Self::Networks(plan) => &**plan,
             Self::Transfer { plan, .. } => &**plan,
         }
     }
@@ -189,6 +193,11 @@ impl Study {
     /// The adjustment with control, if it is one.
     pub fn network(&self) -> Option<&Calibration> {
         if let Self::Network(plan) = self { Some(plan) } else { None }
+    }
+
+    /// Where cameras are when what carries them stands at `stations`: there, unless it is a rig.
+    pub(crate) fn cameras_at<'s>(&self, stations: Cow<'s, [Station]>) -> Cow<'s, [Station]> {
+        if let Self::Networks(plan) = self { plan.cameras_at(stations) } else { stations }
     }
 
     /// The calibrations that are applied, if it is of those.
@@ -209,7 +218,9 @@ impl ViewsSubject {
         match self.study {
             // What is counted of all trials is in their figures.
             Study::Points => self.recognition.is_none(),
-            Study::Network(_) | Study::Blocks(_) | Study::Calibrators(_) | Study::Transfer { .. } => self.study.plan().keeps_points(),
+            Study::Network(_) | Study::Blocks(_) | Study::Calibrators(_) | Study::Networks(_) | Study::Transfer { .. } => {
+                self.study.plan().keeps_points()
+            }
         }
     }
 
@@ -235,7 +246,7 @@ impl ViewsSubject {
     pub fn stations_of(&self, key: Key<'_>) -> Result<Cow<'_, [Station]>, StationError> {
         match &self.redraw {
             None => Ok(Cow::Borrowed(&self.stations)),
-            Some(drawing) => drawing.generate(&self.field, &self.camera, key).map(Cow::Owned),
+            Some(drawing) => drawing.generate(&self.field, &self.camera, key).map(|stations| self.study.cameras_at(Cow::Owned(stations))),
         }
     }
 }

@@ -66,7 +66,7 @@ impl BySets {
 }
 
 /// From one pose to a near one: rotation about its axes, radians, and shift along them.
-pub(super) fn motion(from: &Pose, to: &Pose) -> Vector6<f64> {
+pub fn motion(from: &Pose, to: &Pose) -> Vector6<f64> {
     let step = relative(from, to);
     // The angle of a matrix by its trace is lost where it is small.
     let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(step.rotation)).scaled_axis();

@@ -1,5 +1,6 @@
 //! What other tools adjusted, adjusted anew.
 
+use calibench_adjust::{Options, adjust};
 use calibench_calibrate::{Behind, GrossErrors, Reconstructed, Settings, Solved, calibrate, prepare_reconstruction};
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel};
 use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoint, TieSight};
@@ -85,6 +86,19 @@ fn exact_sights_give_the_cameras_that_took_them() {
     let counts = adjusted.solution.counts();
     // Ten poses and lenses of three parameters, sixty points; seven of the frame are held.
     assert_eq!((counts.observations(), counts.unknowns, counts.constraints), (1200 + 7, 90 + 180, 7));
+}
+
+/// Each image has a pose of its own, and that is said of cameras that the tool took as a rig.
+#[test]
+fn cameras_of_a_rig_are_named_as_no_rig() {
+    let (mut reconstruction, _) = ring(0.0);
+    // Camera 1 has no image that takes part: camera 3 is then alone.
+    reconstruction.sights.retain(|sight| sight.image != 1);
+    let mut found = prepared(&reconstruction, Behind::Count);
+    assert!(found.prepared.notes.is_empty());
+    found.note_rigs(&reconstruction, &[vec![3, 1], vec![0, 2, 4]]);
+    let notes = &found.prepared.notes;
+    assert!(notes.len() == 1 && notes[0].starts_with("the file has cameras c0, c2, c4 as a rig; here they are not"), "{notes:?}");
 }
 
 /// A sight whose point is on the other side of the camera: the mirrored ray gives the same pixel, and the adjustment is the one of a camera that looks the other way.
@@ -180,6 +194,13 @@ fn a_point_that_runs_away_is_left_out_by_name() {
         assert!(calibration.prepared.left_out.iter().all(|left_out| left_out.why.contains("very far away")));
         let sigma0 = calibration.solution.sigma0().unwrap();
         assert!((0.3..0.7).contains(&sigma0), "{sigma0}");
+        // It went on where the search for it ended: the frame, too, is as from the start.
+        let anew = adjust(&calibration.prepared.network, &Options::default()).unwrap();
+        assert!(calibration.solution.iterations() < anew.iterations(), "{} {}", calibration.solution.iterations(), anew.iterations());
+        assert!((calibration.solution.cost() / anew.cost() - 1.0).abs() < 1e-9);
+        let apart = |(a, b): (&Point3<f64>, &Point3<f64>)| (a - b).norm();
+        let most = calibration.solution.points().iter().zip(anew.points()).map(apart).fold(0.0, f64::max);
+        assert!(most < 1e-8, "{most}");
     })
     .unwrap();
     // Where a length to it is asked for it stays, and is named.

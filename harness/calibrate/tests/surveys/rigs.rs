@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use calibench_adjust::mounted;
-use calibench_calibrate::rig::{Pairing, RigPrepared, RigSettings, RigSubject, TimedImage, calibrate_rig, prepare_rig};
+use calibench_calibrate::rig::{
+    Pairing, RigPrepared, RigSettings, RigSubject, Still, TimedImage, calibrate_rig, prepare_rig, still_stands,
+};
 use calibench_calibrate::{CalibrationError, GrossErrors, Optics, Settings};
 use calibench_exchange::control::parse_control;
 use calibench_exchange::points::parse_points;
 use calibench_exchange::times::read_times;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
-use calibench_model::{ControlRow, Points, Pose};
+use calibench_model::{ControlRow, NamedCamera, Points, Pose};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
 use super::network::{SIZE, lens};
@@ -247,4 +249,58 @@ fn four_webcams_are_where_the_reference_has_them() {
         "{:?}",
         freed.doubts
     );
+}
+
+/// The rig as a file has it: axes y down, z forward; the middle camera sits `off` further along its own x.
+fn before(off: f64) -> Vec<NamedCamera> {
+    let sign = [1.0, -1.0, -1.0];
+    let named = |(place, mount): (usize, Pose)| {
+        let centre = mount.centre + if place == 1 { mount.rotation.transpose() * Vector3::new(off, 0.0, 0.0) } else { Vector3::zeros() };
+        let camera_from_world = std::array::from_fn(|i| std::array::from_fn(|j| sign[i] * mount.rotation[(i, j)] * sign[j]));
+        let position = std::array::from_fn(|i| sign[i] * centre[i]);
+        let pose = Some(calibench_model::named_camera::Pose { camera_from_world, position });
+        NamedCamera { pose, ..NamedCamera::new(NAMES[place], lens()) }
+    };
+    mounts().into_iter().enumerate().map(named).collect()
+}
+
+/// 0.5 mm along x at a distance of 1 m is 0.7 px for a camera of 1450 px; standard deviations are those of the noise.
+#[test]
+fn a_camera_that_moved_is_told_from_one_that_stands() {
+    let scene = Scene { noise: 0.1, moments: 12, ..Scene::default() };
+    let mut asked = settings();
+    asked.settings.cameras.iter_mut().for_each(|optics| (optics.start, optics.solve) = (Some(lens()), Some(Vec::new())));
+    let prepared = prepare_rig(&scene.points(), &control(), &asked).unwrap();
+    let found = calibrate_rig(&prepared).unwrap();
+    let same = still_stands(&found, &before(0.0), 1000.0).unwrap();
+    assert!(same.len() == 2 && same.iter().all(|stand| stand.verdict(0.3) == Still::Stands && stand.p > 1e-3), "{same:#?}");
+    let moved = still_stands(&found, &before(0.5), 1000.0).unwrap();
+    let (left, right) = (&moved[0], &moved[1]);
+    assert!(left.verdict(0.3) == Still::Moved && right.verdict(0.3) == Still::Stands, "{moved:#?}");
+    assert!((left.moved.value - 0.5).abs() < 5.0 * left.moved.sigma && left.p < 1e-6, "{left:?}");
+    // Nothing turned: points are elsewhere by as much, and less where they are seen aslant.
+    assert!((0.35..0.55).contains(&left.across.value) && (0.45..0.95).contains(&left.px.value), "{left:?}");
+    // What it moved is within a wide margin; a tight one cannot be told.
+    assert_eq!(left.verdict(2.0), Still::Stands);
+    assert_eq!(right.verdict(0.5 * right.px.sigma), Still::CannotTell);
+    let error = still_stands(&found, &before(0.0)[..2], 1000.0).unwrap_err().to_string();
+    assert!(error.contains("the rig before has 2 cameras; expected 3"), "{error}");
+    let error = still_stands(&found, &before(0.0), 1e-3).unwrap_err().to_string();
+    assert!(error.contains("no point at a distance of 0.001 is in the images of both left and middle"), "{error}");
+}
+
+/// The derivatives of points by a motion are those of differences: a motion of 1e-6 moves pictures as they say.
+#[test]
+fn where_points_go_is_as_differences_have_it() {
+    let scene = Scene { moments: 12, ..Scene::default() };
+    let mut asked = settings();
+    asked.settings.cameras.iter_mut().for_each(|optics| (optics.start, optics.solve) = (Some(lens()), Some(Vec::new())));
+    let prepared = prepare_rig(&scene.points(), &control(), &asked).unwrap();
+    let found = calibrate_rig(&prepared).unwrap();
+    let stand = &still_stands(&found, &before(1e-3), 800.0).unwrap()[0];
+    let now = found.named_cameras().unwrap();
+    let was = before(1e-3);
+    let differ = calibench_model::rig_difference::rig_difference([&was[0], &was[1]], [&now[0], &now[1]], 800.0).unwrap();
+    assert!((stand.px.value / differ.px[0] - 1.0).abs() < 0.02, "{stand:?} {differ:?}");
+    assert!((stand.moved.value / differ.moved - 1.0).abs() < 1e-3, "{stand:?} {differ:?}");
 }

@@ -8,7 +8,7 @@ use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoi
 use calibench_model::{CornerPoint, Reconstruction};
 use nalgebra::Point3;
 
-use super::{LARGEST, lens, oriented};
+use super::{LARGEST, ReconstructionFile, colmap_rigs, lens, oriented};
 use crate::colmap_images::{self, Image, head_in_bytes, in_text, lines_with_points, of_image};
 use crate::formats::{colmap, colmap_bin};
 use crate::little_endian::Bytes;
@@ -28,15 +28,19 @@ pub(super) fn folder(path: &Path) -> Option<PathBuf> {
     (is_part && matches!(ending, "bin" | "txt")).then(|| path.parent().map_or_else(PathBuf::new, Path::to_owned))
 }
 
+/// Where a part of a model is, and whether as bytes.
+pub(super) fn place(folder: &Path, name: &str) -> Option<(PathBuf, bool)> {
+    let paths = [(format!("{name}.bin"), true), (format!("{name}.txt"), false)];
+    paths.iter().map(|(file, is_binary)| (folder.join(file), *is_binary)).find(|(path, _)| path.is_file())
+}
+
 /// A part of a model, as bytes if it is there so, as COLMAP itself prefers.
 fn part(folder: &Path, name: &str) -> Result<(PathBuf, Vec<u8>, bool), CameraFileError> {
-    let paths = [(format!("{name}.bin"), true), (format!("{name}.txt"), false)];
-    let found = paths.iter().map(|(file, is_binary)| (folder.join(file), *is_binary)).find(|(path, _)| path.is_file());
     let missing = || {
         let problem = format!("holds neither {name}.bin nor {name}.txt; expected a model of COLMAP: cameras, images and points3D");
         CameraFileError::new(problem).in_file(&folder.display().to_string())
     };
-    let (path, is_binary) = found.ok_or_else(missing)?;
+    let (path, is_binary) = place(folder, name).ok_or_else(missing)?;
     let bytes = source::read_up_to(&path, LARGEST).map_err(|error| error.in_file(&path.display().to_string()))?;
     Ok((path, bytes, is_binary))
 }
@@ -47,7 +51,7 @@ fn parsed<T>(folder: &Path, name: &str, read: impl FnOnce(&[u8], bool) -> Result
     read(&bytes, is_binary).map_err(|error| error.in_file(&path.display().to_string()))
 }
 
-pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruction, CameraFileError> {
+pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<ReconstructionFile, CameraFileError> {
     let options = ReadOptions { size, ..ReadOptions::default() };
     let cameras = parsed(folder, PARTS[0], |bytes, is_binary| cameras(bytes, is_binary, &options))?;
     let (points, places) = parsed(folder, PARTS[2], points)?;
@@ -72,10 +76,20 @@ pub(super) fn read(folder: &Path, size: Option<ImageSize>) -> Result<Reconstruct
         };
         out_of(bytes, is_binary, &mut take)
     })?;
+    let ids: HashMap<u32, usize> = by_id.iter().filter_map(|(id, place)| Some((id.parse().ok()?, *place))).collect();
+    let mut rigs = Vec::new();
+    match colmap_rigs::read(folder) {
+        Ok(found) => {
+            let known = |rig: Vec<u32>| rig.into_iter().filter_map(|id| ids.get(&id).copied()).collect::<Vec<_>>();
+            rigs = found.into_iter().map(known).filter(|rig| rig.len() > 1).collect();
+        }
+        // Nothing that is adjusted stands there.
+        Err(error) => out.notes.push(format!("{error}: whether cameras are a rig is not known")),
+    }
     if unknown > 0 {
         out.notes.push(format!("{unknown} image points were left out, whose points are not in points3D"));
     }
-    Ok(out)
+    Ok(ReconstructionFile { tool: "COLMAP", reconstruction: out, rigs })
 }
 
 fn cameras(bytes: &[u8], is_binary: bool, options: &ReadOptions) -> Result<Vec<ReconstructedCamera>, CameraFileError> {
@@ -143,7 +157,7 @@ fn points(bytes: &[u8], is_binary: bool) -> Result<PlacedPoints, CameraFileError
     Ok((points, places))
 }
 
-fn text_of(bytes: &[u8]) -> Result<&str, CameraFileError> {
+pub(super) fn text_of(bytes: &[u8]) -> Result<&str, CameraFileError> {
     std::str::from_utf8(bytes).map_err(|_| CameraFileError::new("expected text in UTF-8, found other bytes"))
 }
 

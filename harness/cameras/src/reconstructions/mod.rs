@@ -3,6 +3,7 @@
 mod bal;
 mod bundler;
 mod colmap;
+mod colmap_rigs;
 mod colmap_written;
 mod lens;
 mod openmvg;
@@ -30,6 +31,8 @@ pub struct ReconstructionFile {
     pub tool: &'static str,
     /// What it says.
     pub reconstruction: Reconstruction,
+    /// Cameras that the tool took as mounted rigidly to each other: of each such rig, the indices of its cameras, two or more.
+    pub rigs: Vec<Vec<usize>>,
 }
 
 /// Reads a problem of Bundle Adjustment in the Large, Bundler's bundle.out, OpenMVG's sfm_data.json, or a folder with COLMAP's cameras, images and
@@ -43,7 +46,7 @@ pub struct ReconstructionFile {
 pub fn read_reconstruction(path: &Path, size: Option<ImageSize>) -> Result<ReconstructionFile, CameraFileError> {
     let name = path.display().to_string();
     if let Some(folder) = colmap::folder(path) {
-        return colmap::read(&folder, size).map(|reconstruction| ReconstructionFile { tool: "COLMAP", reconstruction });
+        return colmap::read(&folder, size);
     }
     let in_file = |error: CameraFileError| error.in_file(&name);
     let bytes = source::read_up_to(path, LARGEST).map_err(in_file)?;
@@ -67,7 +70,7 @@ fn of_bytes(bytes: &[u8], size: Option<ImageSize>) -> Result<ReconstructionFile,
     } else {
         return Err(unknown());
     };
-    Ok(ReconstructionFile { tool, reconstruction })
+    Ok(ReconstructionFile { tool, reconstruction, rigs: Vec::new() })
 }
 
 fn unknown() -> CameraFileError {

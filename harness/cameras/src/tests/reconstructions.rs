@@ -280,3 +280,44 @@ fn mistakes_are_named_with_their_place() {
     let error = read_reconstruction(folder.path(), None).unwrap_err().to_string();
     assert!(error.contains("holds neither points3D.bin nor points3D.txt"), "{error}");
 }
+
+/// Three cameras on a rig and one by itself, as COLMAP 3.12 writes them: with an IMU, which is no camera.
+#[test]
+fn cameras_that_colmap_took_as_a_rig_are_known() {
+    let folder = tempfile::tempdir().unwrap();
+    colmap(folder.path());
+    let cameras: String = [7, 9, 4, 5].iter().map(|id| format!("{id} SIMPLE_PINHOLE 800 600 700 400 300\n")).collect();
+    std::fs::write(folder.path().join("cameras.txt"), cameras).unwrap();
+    let rigs = || {
+        let found = read_reconstruction(folder.path(), None).unwrap();
+        (found.rigs, found.reconstruction.notes)
+    };
+    assert_eq!(rigs(), (Vec::new(), Vec::new()));
+    let pose = "0.5 0.5 0.5 0.5 1 2 3";
+    let text = format!("# rigs\n1 4 CAMERA 9 IMU 1 1 {pose} CAMERA 7 1 {pose} CAMERA 4 0\n2 1 CAMERA 5\n");
+    std::fs::write(folder.path().join("rigs.txt"), &text).unwrap();
+    assert_eq!(rigs(), (vec![vec![1, 0, 2]], Vec::new()));
+    for (from, to, why) in [
+        (" 0\n", "\n", "rigs.txt:2, `HAS_POSE`: expected another word, found the end of the line"),
+        ("1 4", "1 3", "rigs.txt:2: expected the end of the line, found `CAMERA`"),
+        ("IMU 1", "IMU x", "rigs.txt:2, `SENSOR_ID`: expected a whole number, found `x`"),
+    ] {
+        std::fs::write(folder.path().join("rigs.txt"), text.replacen(from, to, 1)).unwrap();
+        let (rigs, notes) = rigs();
+        assert!(rigs.is_empty() && notes.len() == 1 && notes[0].contains(why), "{notes:?}");
+        assert!(notes[0].ends_with("whether cameras are a rig is not known"), "{notes:?}");
+    }
+    // The same in bytes, which come before text.
+    let mut bytes = 2_u64.to_le_bytes().to_vec();
+    let words = |bytes: &mut Vec<u8>, words: &[u32]| words.iter().for_each(|word| bytes.extend(word.to_le_bytes()));
+    words(&mut bytes, &[1, 3, 0, 9, 1, 1]);
+    bytes.push(1);
+    bytes.extend([0; 56]);
+    words(&mut bytes, &[0, 4]);
+    bytes.push(0);
+    words(&mut bytes, &[2, 1, 0, 5]);
+    std::fs::write(folder.path().join("rigs.bin"), &bytes).unwrap();
+    assert_eq!(rigs(), (vec![vec![1, 2]], Vec::new()));
+    std::fs::write(folder.path().join("rigs.bin"), &bytes[..bytes.len() - 1]).unwrap();
+    assert!(rigs().1[0].contains("rigs.bin, `rig 2 of 2`: the file of"), "{:?}", rigs().1);
+}

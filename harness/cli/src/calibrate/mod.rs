@@ -36,6 +36,8 @@ mod rig;
 
 use cameras::Cameras;
 use certificate::Asked;
+pub use photographs::corners;
+pub use rig::{patterns, places, rig_names};
 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -229,7 +231,7 @@ impl Calibrate {
             (_, _, Some(board)) => {
                 let finder = finder(board)?.of_each(self.all);
                 let (Corners { points, lost, photos, doubts }, reading) =
-                    photographs::corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
+                    corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
                 Ok(Input { points, lost, photos, reading, control: finder.control(), is_free: false, doubts })
             }

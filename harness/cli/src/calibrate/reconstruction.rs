@@ -43,7 +43,7 @@ impl Calibrate {
         let adjusted = self.reconstruction.adjusted.as_deref();
         let adjusted = adjusted.map(|path| output::folder("--adjusted", path, &inputs, ("calibrate", None))).transpose()?;
         let outputs = self.outputs(&inputs)?;
-        let ReconstructionFile { tool, reconstruction } = read_reconstruction(path, self.cameras.common_size())?;
+        let ReconstructionFile { tool, reconstruction, rigs } = read_reconstruction(path, self.cameras.common_size())?;
         if !context.quiet {
             let Reconstruction { cameras, images, points, sights, .. } = &reconstruction;
             let counts = [(cameras.len(), "cameras"), (images.len(), "images"), (points.len(), "points"), (sights.len(), "image points")];
@@ -56,7 +56,11 @@ impl Calibrate {
         };
         let solved = self.cameras.common_solve().map_or(Solved::Lens, Solved::Named);
         let settings: Settings = self.settings_of(Vec::new(), None)?;
-        let found = prepare_reconstruction(&reconstruction, (&solved, behind), &settings)?;
+        let mut found = prepare_reconstruction(&reconstruction, (&solved, behind), &settings)?;
+        found.note_rigs(&reconstruction, &rigs);
+        if self.answered.json {
+            found.prepared.notes.iter().for_each(|note| say!("{note}"));
+        }
         let doubts = found.doubts(behind);
         calibrate(&found.prepared, &sets(&self.compare)?, |calibration| {
             doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));

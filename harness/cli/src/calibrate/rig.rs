@@ -6,7 +6,7 @@ use calibench_calibrate::Optics;
 use calibench_calibrate::rig::{Pairing, RigCalibration, RigPrepared, RigSettings, TimedImage, calibrate_rig, prepare_rig};
 use calibench_cameras::for_file::for_file;
 use calibench_cameras::rig_files::{colmap_rig, opencv_stereo};
-use calibench_cameras::{ReadOptions, camera_bytes, inputs_of, read_camera_with};
+use calibench_cameras::{CameraFile, ReadOptions, camera_bytes, inputs_of, read_camera_with};
 use calibench_exchange::read_times;
 use calibench_files::{NewFolder, OutputFolder};
 use calibench_model::NamedCamera;
@@ -46,27 +46,6 @@ impl RigArguments {
         !self.names.is_empty()
     }
 
-    fn names(&self) -> Result<Vec<String>, Failure> {
-        let names: Vec<String> = self.names.iter().map(|name| name.trim().to_owned()).collect();
-        if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-            return Err(Failure::input(format!("--rig: `{}` stands twice", twice.1)));
-        }
-        let whole = names.len() > 1 && names.iter().all(|name| !name.is_empty());
-        if whole { Ok(names) } else { Err(Failure::input("--rig: expected the names of two cameras or more, as in left,right")) }
-    }
-
-    /// The patterns of --sync, one a camera.
-    fn patterns(&self, names: &[String]) -> Result<Option<Vec<Pattern>>, Failure> {
-        let Some(text) = &self.sync else { return Ok(None) };
-        let pattern = |text: &str| Pattern::new(text.trim()).map_err(|error| Failure::input(format!("--sync: `{text}`: {error}")));
-        let patterns = text.split('=').map(pattern).collect::<Result<Vec<_>, _>>()?;
-        let right = patterns.len() == names.len() && patterns.iter().all(|pattern| !pattern.as_str().is_empty());
-        let wrong = || {
-            format!("--sync: `{text}` has {} patterns; expected one for each of {}, with = between them", patterns.len(), names.join(", "))
-        };
-        if right { Ok(Some(patterns)) } else { Err(Failure::input(wrong())) }
-    }
-
     fn pairing(&self, cameras: &[Optics], patterns: Option<Vec<Pattern>>) -> Result<Pairing, Failure> {
         if let Some(path) = &self.times {
             let times = read_times(path)?.into_iter().map(|(image, time_s)| TimedImage { image, time_s }).collect();
@@ -77,14 +56,49 @@ impl RigArguments {
     }
 }
 
+/// The names of `--rig`: two at least, each once.
+pub fn rig_names(given: &[String]) -> Result<Vec<String>, Failure> {
+    let names: Vec<String> = given.iter().map(|name| name.trim().to_owned()).collect();
+    if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        return Err(Failure::input(format!("--rig: `{}` stands twice", twice.1)));
+    }
+    let whole = names.len() > 1 && names.iter().all(|name| !name.is_empty());
+    if whole { Ok(names) } else { Err(Failure::input("--rig: expected the names of two cameras or more, as in left,right")) }
+}
+
+/// The patterns of `--sync`, one a camera.
+pub fn patterns(text: &str, names: &[String]) -> Result<Vec<Pattern>, Failure> {
+    let pattern = |text: &str| Pattern::new(text.trim()).map_err(|error| Failure::input(format!("--sync: `{text}`: {error}")));
+    let patterns = text.split('=').map(pattern).collect::<Result<Vec<_>, _>>()?;
+    let right = patterns.len() == names.len() && patterns.iter().all(|pattern| !pattern.as_str().is_empty());
+    let wrong =
+        || format!("--sync: `{text}` has {} patterns; expected one for each of {}, with = between them", patterns.len(), names.join(", "));
+    if right { Ok(patterns) } else { Err(Failure::input(wrong())) }
+}
+
+/// Where the cameras of these names are in a file: by name, or, where it has other names and as many cameras, in its order, which is said.
+pub fn places(file: &CameraFile, path: &Path, names: &[String]) -> Result<Vec<usize>, Failure> {
+    let by_name = |name: &String| file.cameras.iter().position(|camera| camera.name == *name);
+    if let Some(places) = names.iter().map(by_name).collect() {
+        return Ok(places);
+    }
+    let (count, shown) = (file.cameras.len(), path.display());
+    if count != names.len() {
+        let problem = format!("{shown}: holds {count} cameras that have other names than the {} of the rig", names.len());
+        return Err(Failure::input(format!("{problem}; expected a file of the rig, or --start CAMERA=FILE of calibrate")));
+    }
+    say!("{shown}: its cameras are taken in their order as {}", names.join(", "));
+    Ok((0..count).collect())
+}
+
 impl Calibrate {
     /// As [`Calibrate::run`], of a rig.
     pub(super) fn run_rig(&self, context: &Context<'_>) -> Result<(), Failure> {
         let given = [&self.points, &self.control, &self.rig.times].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let folder = self.output.as_deref().map(|path| output::folder("-o", path, &inputs, ("calibrate", None))).transpose()?;
-        let names = self.rig.names()?;
-        let patterns = self.rig.patterns(&names)?;
+        let names = rig_names(&self.rig.names)?;
+        let patterns = self.rig.sync.as_deref().map(|text| patterns(text, &names)).transpose()?;
         let Input { points, photos, control, is_free, doubts, .. } = self.input(context)?;
         if is_free {
             return Err(Failure::input("--rig: expected --control, or photographs of a board: of a rig coordinates are known"));
@@ -122,16 +136,7 @@ impl Calibrate {
             }
             return Ok(cameras);
         }
-        let by_name = |name: &str| file.cameras.iter().position(|camera| camera.name == name);
-        let places: Option<Vec<usize>> = names.iter().map(|name| by_name(name)).collect();
-        if places.is_none() && file.cameras.len() != names.len() {
-            let problem = format!("{path}: holds {} cameras that have other names than the {} of the rig", file.cameras.len(), names.len());
-            return Err(Failure::input(format!("{problem}; expected --start CAMERA=FILE")));
-        }
-        if places.is_none() {
-            say!("{path}: its cameras are taken in their order as {}", names.join(", "));
-        }
-        let places = places.unwrap_or_else(|| (0..names.len()).collect());
+        let places = places(&file, Path::new(path), names)?;
         for (optics, place) in cameras.iter_mut().zip(places) {
             optics.start = start(optics, &file.cameras[place])?;
         }

@@ -28,6 +28,7 @@ use crate::same_camera::for_images;
 mod files;
 mod page;
 mod photographs;
+mod rig;
 
 use files::corner_file;
 
@@ -73,7 +74,7 @@ pub struct Judge {
     /// A camera file to compare with: a calibration that somebody made before
     #[arg(long, value_name = "FILE")]
     published: Option<PathBuf>,
-    /// A camera file in use: does it still hold on these photographs or points? Exit code 0 if it holds, 1 if it has moved, 3 if they cannot tell
+    /// A camera file in use (with --rig that of a rig, as Kalibr's chain or OpenCV's stereo file): does it still hold on these photographs or points? Exit code 0 if it holds, 1 if it has moved, 3 if they cannot tell
     #[arg(long, value_name = "FILE", conflicts_with = "published")]
     camera: Option<PathBuf>,
     /// The camera of --camera or --published took the images, too, if they have the same aspect and another size: it is taken as it is in theirs
@@ -91,6 +92,8 @@ pub struct Judge {
     /// Seed of the splits
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
+    #[command(flatten)]
+    rig: rig::RigArguments,
     /// Folder for the page with its pictures and its numbers as CSV; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
@@ -101,6 +104,9 @@ pub struct Judge {
 impl Judge {
     pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
         self.photos = with_folders(&self.photos)?;
+        if self.rig.is_asked() {
+            return self.run_rig(context);
+        }
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
         let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));

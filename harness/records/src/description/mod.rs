@@ -11,7 +11,7 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
-pub use study::{Adjustment, Blocks, Study, Systems};
+pub use study::{Adjustment, Blocks, Networks, Study, Systems};
 pub use sweep::{Axis, Cell, Sweep, Value};
 pub use views::{Role, Room, Station, Target, Views};
 
@@ -147,6 +147,10 @@ mod tests {
         Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }
     }
 
+    fn networks() -> Networks {
+        Networks { model: "opencv5".into(), sigma_px: 0.1, mounts: vec!["left".into()], distances: vec![["a".into(), "b".into()]] }
+    }
+
     #[test]
     fn what_is_written_is_read_again_to_the_last_bit() {
         let (control, check) = (Some(Role::Control), Some(Role::Check));
@@ -154,6 +158,7 @@ mod tests {
             Study::Views(views(None)),
             Study::Network(views(control), TOLD),
             Study::Blocks(views(None), blocks()),
+            Study::Networks(views(None), networks()),
             Study::Transfer(views(check)),
         ];
         for study in [Study::Scene, Study::Photographs { judged: true }].into_iter().chain(of_views) {

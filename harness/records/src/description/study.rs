@@ -19,6 +19,8 @@ pub enum Study {
     Blocks(Box<Views>, Blocks),
     /// Whole calibration systems are told them.
     Calibrators(Box<Views>, Systems),
+    /// Free networks and rigs are made of them.
+    Networks(Box<Views>, Networks),
     /// Nothing is measured: calibrations that are made elsewhere are applied here.
     Transfer(Box<Views>),
     /// Photographs, of which no truth is known.
@@ -34,9 +36,8 @@ impl Study {
     /// The views of a testfield, if it is of such.
     pub fn views(&self) -> Option<&Views> {
         match self {
-            Self::Views(views) | Self::Network(views, _) | Self::Blocks(views, _) | Self::Calibrators(views, _) | Self::Transfer(views) => {
-                Some(views)
-            }
+            Self::Views(views) | Self::Transfer(views) => Some(views),
+            Self::Network(views, _) | Self::Blocks(views, _) | Self::Calibrators(views, _) | Self::Networks(views, _) => Some(views),
             Self::Scene | Self::Photographs { .. } | Self::Printed(_) => None,
         }
     }
@@ -74,6 +75,20 @@ pub struct Systems {
     pub sigma_px: Option<f64>,
 }
 
+/// What the networks that are adjusted are told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Networks {
+    /// The camera model that is calibrated.
+    pub model: String,
+    /// The standard deviation of an image coordinate that they are told, px.
+    pub sigma_px: f64,
+    /// Cameras that are mounted rigidly to each other, by name; none of a free network.
+    pub mounts: Vec<String>,
+    /// Targets between which distances are measured, by name.
+    pub distances: Vec<[String; 2]>,
+}
+
 /// A [`Study`] as files have it: by what is measured.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -99,6 +114,8 @@ struct WrittenViews {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     calibrators: Option<Systems>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    networks: Option<Networks>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     room: Option<Room>,
 }
 
@@ -112,32 +129,59 @@ impl TryFrom<Subject> for Study {
             Subject::Printed(printed) => return Ok(Self::Printed(printed)),
             Subject::Views(written) => *written,
         };
-        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, room } = written;
+        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, networks, room } = written;
         let views = Box::new(Views { size, unit, extent, normal, stations, targets, room });
-        match (adjustment, blocks, calibrators) {
-            (Some(told), None, None) => Ok(Self::Network(views, told)),
-            (None, Some(told), None) => Ok(Self::Blocks(views, told)),
-            (None, None, Some(told)) => Ok(Self::Calibrators(views, told)),
+        match (adjustment, blocks, calibrators, networks) {
+            (Some(told), None, None, None) => Ok(Self::Network(views, told)),
+            (None, Some(told), None, None) => Ok(Self::Blocks(views, told)),
+            (None, None, Some(told), None) => Ok(Self::Calibrators(views, told)),
+            (None, None, None, Some(told)) => Ok(Self::Networks(views, told)),
             // Where nothing is adjusted only calibrations that come from elsewhere have control and check points.
-            (None, None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
-            (None, None, None) => Ok(Self::Views(views)),
-            _ => Err("`adjustment`, `blocks` and `calibrators`: expected one of them"),
+            (None, None, None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
+            (None, None, None, None) => Ok(Self::Views(views)),
+            _ => Err("`adjustment`, `blocks`, `calibrators` and `networks`: expected one of them"),
         }
     }
 }
 
 impl From<Study> for Subject {
     fn from(study: Study) -> Self {
-        let (views, adjustment, blocks, calibrators) = match study {
+        let (mut adjustment, mut blocks, mut calibrators, mut networks) = (None, None, None, None);
+        let views = match study {
             Study::Scene => return Self::Scene,
             Study::Photographs { judged } => return Self::Photographs { judged },
             Study::Printed(printed) => return Self::Printed(printed),
-            Study::Views(views) | Study::Transfer(views) => (views, None, None, None),
-            Study::Network(views, told) => (views, Some(told), None, None),
-            Study::Blocks(views, told) => (views, None, Some(told), None),
-            Study::Calibrators(views, told) => (views, None, None, Some(told)),
+            Study::Views(views) | Study::Transfer(views) => views,
+            Study::Network(views, told) => {
+                adjustment = Some(told);
+                views
+            }
+            Study::Blocks(views, told) => {
+                blocks = Some(told);
+                views
+            }
+            Study::Calibrators(views, told) => {
+                calibrators = Some(told);
+                views
+            }
+            Study::Networks(views, told) => {
+                networks = Some(told);
+                views
+            }
         };
         let Views { size, unit, extent, normal, stations, targets, room } = *views;
-        Self::Views(Box::new(WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, room }))
+        Self::Views(Box::new(WrittenViews {
+            size,
+            unit,
+            extent,
+            normal,
+            stations,
+            targets,
+            adjustment,
+            blocks,
+            calibrators,
+            networks,
+            room,
+        }))
     }
 }

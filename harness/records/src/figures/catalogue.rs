@@ -83,6 +83,14 @@ catalogue! {
     IsWrongAndSilent: Network "wrong and silent" in Number, 2, Less, CAMERA, "whether it gave a camera, said nothing against it, and was farther off than five stated standard deviations and a pixel";
     StatedRms: Network "stated rms" in One("px"), 3, Neither, CAMERA, "root mean square of residuals as the system reports it";
     PointsLeftOut: Network "points left out" in Number, 1, Neither, CAMERA, "image points that the system left out";
+    // Networks that are adjusted as `calibrate` adjusts them.
+    CostOverRedundancy: Network "cost over redundancy" in Number, 3, One, CAMERA, "weighted sum of squares over redundancy, with the stated precision";
+    SquareOverCovariance: Network "square over covariance" in Number, 3, One, CAMERA, "square of the errors of all parameters of cameras and mounts together in their stated covariance, over their number";
+    WithinRegion: Network "within 95 % region" in Number, 3, Neither, CAMERA, "whether all these errors together are within the region of 95 %";
+    SquareOfLengths: Network "z2 of lengths" in Number, 3, One, CAMERA, "mean square of errors of lengths in stated standard deviations";
+    LengthsWithin: Network "lengths within 95 %" in Number, 3, Neither, CAMERA, "share of the lengths within their intervals of 95 %";
+    IsWrongMinimum: Network "wrong minimum" in Number, 4, Less, CAMERA, "whether the truth leads to a lower minimum than the one that was found";
+    IsWrongMinimumAndSilent: Network "wrong minimum and silent" in Number, 4, Less, CAMERA, "whether it does, and nothing was said against the one that was found";
     // Check points.
     RmseX: Check "rmse_x" in Object, 4, Less, CAMERA, "root mean square error of check points in X";
     RmseY: Check "rmse_y" in Object, 4, Less, CAMERA, "root mean square error of check points in Y";

@@ -13,6 +13,7 @@ mod next;
 mod page;
 mod ply;
 mod rig;
+mod rig_stands;
 mod scale;
 mod sets_page;
 mod tables;
@@ -27,6 +28,7 @@ pub use page::{summary, write_report};
 pub use ply::scene_ply;
 pub use rig::rig_summary;
 pub use uncertainty::FrameUncertainty;
+pub use rig_stands::rig_stands;
 pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

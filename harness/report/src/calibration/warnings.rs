@@ -54,6 +54,7 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         warnings.push(format!("{weighted} image points have less weight (Huber)"));
     }
     warnings.extend(lost(calibration.prepared.unmeasured.iter().map(|[_, target, status, _]| (target, status))));
+    warnings.extend(calibration.prepared.notes.iter().cloned());
     let far = &calibration.prepared.far;
     if !far.is_empty() {
         let (count, names) = (far.len(), calibench_calibrate::few(far));

@@ -13,6 +13,7 @@ mod listing;
 mod measurement;
 mod next;
 mod rig;
+mod rig_stands;
 mod schema;
 mod text;
 
@@ -32,6 +33,7 @@ pub use judgement::JudgementAnswer;
 pub use listing::{ListAnswer, Listed, ListedParameter};
 pub use measurement::{MeasurementAnswer, MeasurementCounts};
 pub use rig::RigAnswer;
+pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
 
 /// What a command answers.

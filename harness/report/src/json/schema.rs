@@ -6,14 +6,15 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer,
+    MeasurementAnswer, RigAnswer, RigStandsAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 9] = [
+pub const COMMANDS: [&str; 10] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
+    RigStandsAnswer::COMMAND,
     ConversionAnswer::COMMAND,
     CameraFileAnswer::COMMAND,
     DifferenceAnswer::COMMAND,
@@ -31,6 +32,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         CalibrationAnswer::COMMAND => of::<CalibrationAnswer>(),
         RigAnswer::COMMAND => of::<RigAnswer>(),
         JudgementAnswer::COMMAND => of::<JudgementAnswer>(),
+        RigStandsAnswer::COMMAND => of::<RigStandsAnswer>(),
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
         CameraFileAnswer::COMMAND => of::<CameraFileAnswer>(),
         DifferenceAnswer::COMMAND => of::<DifferenceAnswer>(),

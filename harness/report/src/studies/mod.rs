@@ -3,6 +3,7 @@
 mod blocks;
 mod calibrators;
 mod network;
+mod networks;
 mod photographs;
 mod points;
 mod printed;
@@ -31,6 +32,7 @@ pub fn of(scenario: &Description) -> &'static dyn Section {
         Study::Network(..) => &network::Network,
         Study::Blocks(..) => &blocks::Blocks,
         Study::Calibrators(..) => &calibrators::Calibrators,
+        Study::Networks(..) => &networks::Networks,
         Study::Transfer(_) => &transfer::Transfer,
         Study::Photographs { .. } => &photographs::Photographs,
         Study::Printed(_) => &printed::Printed,

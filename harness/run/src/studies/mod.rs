@@ -4,6 +4,7 @@ mod adjust;
 pub mod blocks;
 pub mod calibrators;
 pub mod network;
+pub mod networks;
 pub mod printed;
 pub mod recognition;
 pub mod transfer;
@@ -24,6 +25,7 @@ pub(crate) fn of<'a>(study: &'a Study, tools: Tools<'a>) -> Option<Box<dyn Adjus
         Study::Network(plan) => Some(Box::new(&**plan)),
         Study::Blocks(plan) => Some(Box::new(&**plan)),
         Study::Calibrators(plan) => Some(Box::new(calibrators::Study { plan, tools })),
+        Study::Networks(plan) => Some(Box::new(&**plan)),
         Study::Points | Study::Transfer { .. } => None,
     }
 }

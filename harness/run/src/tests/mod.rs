@@ -6,6 +6,7 @@ mod drawn;
 mod example;
 mod kinds;
 mod network;
+mod networks;
 mod recordings;
 mod reuse;
 mod second_solver;

@@ -5,6 +5,7 @@ pub mod blocks;
 pub mod calibrators;
 mod named;
 pub mod network;
+pub mod networks;
 mod plan;
 mod points;
 pub mod printed;

@@ -17,6 +17,7 @@ use calibench_scenario::ViewsSubject;
 use calibench_scenario::studies::calibrators::Calibrators;
 use rayon::prelude::*;
 
+pub(super) use told::in_model;
 pub use told::{Asked, asked};
 
 use super::adjust::Adjust;

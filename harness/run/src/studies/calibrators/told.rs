@@ -84,7 +84,7 @@ pub fn asked<'a>(
 }
 
 /// `camera` in the model that is asked for, where it is one and the same.
-fn in_model(camera: &Camera, model: &str) -> Option<Camera> {
+pub(in crate::studies) fn in_model(camera: &Camera, model: &str) -> Option<Camera> {
     let target = match model {
         "opencv4" => Target::OpenCv { coefficients: 4 },
         "opencv5" => Target::OpenCv { coefficients: 5 },
