@@ -26,7 +26,7 @@ pub mod testfield;
 pub mod told;
 pub mod views;
 
-pub use control::{ControlDisc, ControlRow, MeasuredDistance, TestLength};
+pub use control::{BoardCorner, ControlDisc, ControlRow, MeasuredDistance, TestLength};
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
 pub use image::{Image, level};
 pub use median::{median, upper_median};

@@ -27,12 +27,14 @@ use crate::board::{HELP, board_of};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
+mod board;
 mod camera_file;
 mod cameras;
 mod photographs;
 mod reconstruction;
 mod rig;
 
+use board::BoardArguments;
 use cameras::Cameras;
 
 #[derive(Args)]
@@ -81,9 +83,11 @@ pub struct Calibrate {
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, free:A,B,C,... (these targets stay closest to their start values), or minimal:A,B,C,D,E (X and Y of two, Z of three) [default: control; without --control free]
     #[arg(long, value_name = "DATUM")]
     datum: Option<DatumChoice>,
-    /// Shape of a board of control points: tested (bent where the points say so), flat, bent (a surface of second order), bent-axes (mrcal's two parameters), or free (every point, as with --datum free)
-    #[arg(long, value_name = "SHAPE", default_value = "tested")]
-    board_shape: BoardShape,
+    /// Shape of a board of control points: tested (bent where the points say so), flat, bent (a surface of second order), bent-axes (mrcal's two parameters), or free (every point, as with --datum free) [default: tested]
+    #[arg(long, value_name = "SHAPE")]
+    board_shape: Option<BoardShape>,
+    #[command(flatten)]
+    known: BoardArguments,
     /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]
     #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     sigma: Option<f64>,
@@ -131,6 +135,7 @@ pub struct Calibrate {
 struct Outputs {
     camera: Option<OutputFile>,
     scene: Option<OutputFile>,
+    board: Option<OutputFile>,
     report: Option<OutputFolder>,
 }
 
@@ -160,7 +165,7 @@ impl Calibrate {
             return self.run_reconstruction(path, context);
         }
         let given = [&self.points, &self.control, &self.approx, &self.distances, &self.poses].into_iter().flatten().cloned();
-        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
+        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.known.inputs().cloned()).chain(self.cameras.starts()));
         let outputs = self.outputs(&inputs)?;
         let Input { points, lost, photos, reading, control, is_free, doubts } = self.input(context)?;
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
@@ -184,7 +189,7 @@ impl Calibrate {
             let suspects = if in_doubt { suspects(Ok(calibration)) } else { Vec::new() };
             // What one place refuses is not lost for the others.
             let told = self.tell(calibration, &doubts, &suspects);
-            let delivered = self.deliver(calibration, (&photos, reading, &doubts), &suspects, &outputs);
+            let delivered = self.deliver(calibration, (&photos, reading, &doubts), &suspects, (&outputs, &control));
             told.and(delivered)?;
             if in_doubt { Err(Failure::Doubt) } else { Ok(()) }
         })
@@ -195,7 +200,9 @@ impl Calibrate {
         let report = self.report.as_deref().map(|path| output::folder("--report", path, inputs, ("calibrate", None))).transpose()?;
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, inputs)).transpose()?;
-        Ok(Outputs { camera, scene, report })
+        let board = self.known.output(inputs)?;
+        output::distinct(("-o", camera.as_ref()), ("--save-board", board.as_ref()))?;
+        Ok(Outputs { camera, scene, board, report })
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
@@ -222,7 +229,7 @@ impl Calibrate {
                 let (Corners { points, lost, photos, doubts }, reading) =
                     photographs::corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
-                Ok(Input { points, lost, photos, reading, control: finder.control(), is_free: false, doubts })
+                Ok(Input { points, lost, photos, reading, control: self.known.corners(finder.control())?, is_free: false, doubts })
             }
             _ => Err(Failure::input("expected --points and --size, with --control or --distances, or photographs and --board")),
         }
@@ -246,7 +253,8 @@ impl Calibrate {
             datum: self.datum(),
             distances: self.distances.as_deref().map(read_distances).transpose()?.unwrap_or_default(),
             lengths: self.length.clone(),
-            shape: self.board_shape,
+            shape: self.known.shape(self.board_shape)?,
+            board: self.known.stated(),
             gross: self.gross(),
             sigma_px: self.sigma,
             limit_px: self.limit,
@@ -286,7 +294,7 @@ impl Calibrate {
         calibration: &Calibration<'_>,
         (photos, reading, doubts): (&[Photo], Reading, &[String]),
         suspects: &[Suspected],
-        outputs: &Outputs,
+        (outputs, control): (&Outputs, &[ControlRow]),
     ) -> Result<(), Failure> {
         let doubts: Vec<String> = doubts.iter().cloned().chain(suspects.iter().map(Suspected::words)).collect();
         let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path(), reading)).collect();
@@ -294,8 +302,10 @@ impl Calibrate {
         let scene = outputs.scene.as_ref().map_or(Ok(()), |output| output.write(|file| file.write_all(scene_ply(calibration).as_bytes())));
         let report = |folder: &OutputFolder| folder.replace(|folder| write_report(calibration, &photos, &doubts, folder));
         let report = outputs.report.as_ref().map_or(Ok(()), report);
+        let board = self.known.deliver(outputs.board.as_ref(), calibration, control);
         camera?;
         scene?;
+        board?;
         Ok(report?)
     }
 }

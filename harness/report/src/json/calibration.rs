@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::compared::Set;
+use super::measured_board::{MeasuredBoardAnswer, Scale};
 use super::doubted::Doubted;
 use super::lengths::{Length, lengths};
 use super::next::NextAnswer;
@@ -51,6 +52,8 @@ pub struct CalibrationAnswer {
     rivals: Vec<Rival>,
     /// The shape of a planar testfield.
     board: Board,
+    /// What of the object's coordinates takes no part in the standard deviations, since nobody stated how exact it is, in words.
+    taken_as_exact: Vec<String>,
     /// The images, with their exterior orientations.
     images: Vec<Image>,
     /// Image points that Baarda's test rejected.
@@ -198,6 +201,12 @@ struct Board {
     sigma: Option<[f64; 3]>,
     /// Probability of as much of a bend by chance, if the board is flat.
     p: Option<f64>,
+    /// What was stated of the print's scale and how much of the standard deviations it is; null where it was not.
+    scale: Option<Scale>,
+    /// The standard deviation that was stated of each coordinate of a corner, object units; null where none was.
+    print_noise: Option<f64>,
+    /// The corners as the images show them; null where they were not asked for.
+    measured: Option<MeasuredBoardAnswer>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -262,6 +271,7 @@ impl CalibrationAnswer {
             checks: calibration.checked.iter().map(check).collect(),
             rivals: prepared.rivals.iter().map(|rival| self::rival(calibration, rival)).collect(),
             board: board(calibration),
+            taken_as_exact: calibration.taken_as_exact(),
             images: images(calibration),
             rejected: rejected(calibration),
             sets: calibration.compared.iter().flat_map(|compared| &compared.sets).map(Set::new).collect(),
@@ -349,14 +359,26 @@ fn rival(calibration: &Calibration<'_>, rival: &calibench_calibrate::Rival) -> R
 }
 
 fn board(calibration: &Calibration<'_>) -> Board {
-    let of = |shape, why: Option<&String>| Board { shape, why: why.cloned(), bend: None, sigma: None, p: None };
+    let stated = &calibration.prepared.settings.board;
+    let none = Board {
+        shape: "untouched",
+        why: None,
+        bend: None,
+        sigma: None,
+        p: None,
+        scale: stated.scale.map(|scale| Scale { value: scale.value, sigma: scale.sigma, of_lengths: scale.share() }),
+        print_noise: stated.noise,
+        measured: calibration.measured_board.as_ref().and_then(|board| board.as_ref().ok()).map(MeasuredBoardAnswer::new),
+    };
     match &calibration.prepared.shape {
-        Shape::Untouched => of("untouched", None),
-        Shape::Untested(why) => of("untested", Some(why)),
-        Shape::Flat { bend, .. } => Board { bend: Some(bend.coefficients), sigma: Some(bend.sigmas), p: Some(bend.p), ..of("flat", None) },
+        Shape::Untouched => none,
+        Shape::Untested(why) => Board { shape: "untested", why: Some(why.clone()), ..none },
+        Shape::Flat { bend, .. } => {
+            Board { shape: "flat", bend: Some(bend.coefficients), sigma: Some(bend.sigmas), p: Some(bend.p), ..none }
+        }
         Shape::Bent { bend, .. } => {
             let (values, sigmas) = board_bend(calibration).unzip();
-            Board { bend: values, sigma: sigmas, p: bend.map(|bend| bend.p), ..of("bent", None) }
+            Board { shape: "bent", bend: values, sigma: sigmas, p: bend.map(|bend| bend.p), ..none }
         }
     }
 }

@@ -10,6 +10,7 @@ mod doubted;
 mod judgement;
 mod lengths;
 mod listing;
+mod measured_board;
 mod measurement;
 mod next;
 mod rig;
