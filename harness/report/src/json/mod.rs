@@ -1,6 +1,7 @@
 //! What commands answer to programs: one JSON document each, with a schema that says what every key is.
 
 mod acceptance;
+mod board;
 mod calibration;
 mod camera;
 mod compared;
