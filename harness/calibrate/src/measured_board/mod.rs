@@ -6,7 +6,7 @@ mod printer;
 
 use std::collections::HashMap;
 
-use calibench_adjust::{Datum, Network, ObjectPoint, Options, Solution, adjust};
+use calibench_adjust::{Datum, Network, ObjectPoint, Solution, adjust};
 use calibench_model::{BoardCorner, ControlRow};
 use nalgebra::{Matrix3, Point3, Vector3};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};

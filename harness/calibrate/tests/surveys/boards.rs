@@ -1,12 +1,12 @@
 //! Boards whose corners are measured, and boards of which something is stated.
 
 use calibench_calibrate::{
-    BoardScale, BoardShape, Calibration, CalibrationError, MeasuredBoard, Prepared, Settings, StatedBoard, Subject, calibrate, prepare,
+    AdjustedLength, BoardScale, BoardShape, Calibration, CalibrationError, MeasuredBoard, Prepared, Settings, StatedBoard, Subject, calibrate, prepare,
     with_corners,
 };
 use calibench_model::camera::CameraModel;
 use calibench_model::{MeasuredDistance, Pose};
-use nalgebra::{DMatrix, DVector, Point3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 
 use crate::network::{Scene, board, lens, settings};
@@ -196,6 +196,17 @@ fn adjusted<T>(scene: &Scene, settings: &Settings, read: impl Fn(&Calibration<'_
     read(&prepared.adjust().unwrap())
 }
 
+/// The camera's parameters, their covariance, stations with theirs, a length, and what is taken as exact.
+type Told = (Vec<f64>, DMatrix<f64>, Vec<(Point3<f64>, Matrix3<f64>)>, AdjustedLength, Vec<String>);
+
+fn told(calibration: &Calibration<'_>) -> Told {
+    let poses = calibration.solution.poses().iter().zip(&calibration.covariances.poses);
+    let stations = poses.map(|(pose, block)| (pose.centre, block.fixed_view::<3, 3>(0, 0).into_owned())).collect();
+    let parameters = calibration.camera(0).parameters().iter().map(|parameter| parameter.value).collect();
+    let length = calibration.lengths().unwrap()[0].clone();
+    (parameters, calibration.covariances.interior.clone(), stations, length, calibration.taken_as_exact())
+}
+
 /// All lengths are the scale's: stations go with it, the camera does not, and their covariances have its part to first order.
 #[test]
 fn a_scale_moves_stations_and_lengths_and_no_camera() {
@@ -203,19 +214,8 @@ fn a_scale_moves_stations_and_lengths_and_no_camera() {
     let (scale, sigma) = (1.01, 2e-3);
     let lengths = vec![["t0".to_owned(), "t8".to_owned()]];
     let with = |scale| Settings { lengths: lengths.clone(), ..asked(StatedBoard { scale, ..StatedBoard::default() }) };
-    let read = |calibration: &Calibration<'_>| {
-        let stations: Vec<(Point3<f64>, nalgebra::Matrix3<f64>)> = calibration
-            .solution
-            .poses()
-            .iter()
-            .zip(&calibration.covariances.poses)
-            .map(|(pose, block)| (pose.centre, block.fixed_view::<3, 3>(0, 0).into_owned()))
-            .collect();
-        let length = calibration.lengths().unwrap()[0].clone();
-        (calibration.camera(0).parameters().iter().map(|parameter| parameter.value).collect::<Vec<f64>>(), calibration.covariances.interior.clone(), stations, length, calibration.taken_as_exact())
-    };
-    let plain = adjusted(&scene, &with(None), read);
-    let scaled = adjusted(&scene, &with(Some(BoardScale { value: scale, sigma })), read);
+    let plain = adjusted(&scene, &with(None), told);
+    let scaled = adjusted(&scene, &with(Some(BoardScale { value: scale, sigma })), told);
     assert!(plain.0.iter().zip(&scaled.0).all(|(a, b)| (a - b).abs() < 1e-6 * (1.0 + a.abs())), "{:?} {:?}", plain.0, scaled.0);
     assert!((plain.1.clone() - &scaled.1).abs().max() < 1e-6 * plain.1.abs().max());
     let share = sigma / scale;
@@ -231,7 +231,7 @@ fn a_scale_moves_stations_and_lengths_and_no_camera() {
 #[test]
 fn what_nobody_stated_is_taken_as_exact() {
     let scene = photographed(8, |_| Vector3::zeros(), 0.1, 6);
-    let of = |settings: &Settings| adjusted(&scene, settings, Calibration::taken_as_exact);
+    let of = |settings: &Settings| adjusted(&scene, settings, |calibration| calibration.taken_as_exact());
     let flat = of(&settings("opencv4"));
     assert_eq!(flat.len(), 3, "{flat:?}");
     assert!(flat[1].contains("flatness") && flat[2].contains("places of its points"));
