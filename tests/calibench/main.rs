@@ -36,6 +36,7 @@ mod league;
 mod lists;
 mod manual;
 mod measure;
+mod measured_boards;
 mod messages;
 mod models;
 mod networks;

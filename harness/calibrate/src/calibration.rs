@@ -12,7 +12,7 @@ use calibench_model::named_camera::ParameterCovariance;
 
 use crate::allowed::Verdicts;
 use crate::ended::{ITERATIONS, ended};
-use crate::{CalibrationError, Checked, Compared, Doubt, GrossErrors, OverFrame, Prepared, Resampled};
+use crate::{CalibrationError, Checked, Compared, Doubt, GrossErrors, MeasuredBoard, OverFrame, Prepared, Resampled};
 
 /// A calibration and its quality.
 #[derive(Clone, Debug)]
@@ -33,6 +33,8 @@ pub struct Calibration<'n> {
     pub compared: Option<Compared>,
     /// Standard deviations from leaving images out, or why there are none; `None` until [`Calibration::resample`].
     pub resampled: Option<Result<Resampled, String>>,
+    /// The board as these images show it, or why it cannot be told; `None` where it was not asked for, and until [`Calibration::measure_board`].
+    pub measured_board: Option<Result<MeasuredBoard, String>>,
     /// What the model may leave out; empty until [`Calibration::examine`].
     pub checked: Vec<Checked>,
     /// How well each camera is known over its frame; `None` where its interior orientation is not adjusted. Empty until [`Calibration::examine`].
@@ -56,12 +58,15 @@ impl Prepared {
     /// What the network does not determine, by name; what else [`adjust`] refuses.
     pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
         let (solution, found, huber) = self.solution()?;
-        let (covariances, reliability) = if solution.counts().redundancy() > 0 {
+        let (mut covariances, reliability) = if solution.counts().redundancy() > 0 {
             let (covariances, reliability) = solution.quality(Variance::Estimated, self.test())?;
             (covariances, Some(reliability))
         } else {
             (solution.covariances(Variance::Apriori)?, None)
         };
+        if let Some(scale) = &self.settings.board.scale {
+            scale.add_to(&mut covariances, solution.poses().iter().map(|pose| pose.centre), solution.points());
+        }
         Ok(Calibration {
             prepared: self,
             solution,
@@ -71,6 +76,7 @@ impl Prepared {
             reliability,
             compared: None,
             resampled: None,
+            measured_board: None,
             checked: Vec::new(),
             over_frame: Vec::new(),
             rims: Vec::new(),

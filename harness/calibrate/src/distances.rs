@@ -63,7 +63,8 @@ impl Calibration<'_> {
         let asked = settings.lengths.iter().zip(&self.prepared.lengths).map(|(targets, points)| (targets, *points, None));
         let length = |(targets, points, measured): (&[String; 2], [usize; 2], Option<CheckedDistance>)| {
             let found = self.solution.length(points, self.variance())?;
-            Ok(AdjustedLength { targets: targets.clone(), value: found.value, sigma: found.sigma, measured })
+            let of_scale = settings.board.scale.map_or(0.0, |scale| found.value * scale.share());
+            Ok(AdjustedLength { targets: targets.clone(), value: found.value, sigma: found.sigma.hypot(of_scale), measured })
         };
         measured.chain(asked).map(length).collect()
     }

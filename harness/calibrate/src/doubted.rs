@@ -15,6 +15,8 @@ pub enum Subject {
     Control,
     /// Measured distances.
     Distances,
+    /// A board whose corners were measured.
+    Board,
     /// The lens: more than the model pictures.
     Lens,
     /// One pose for all rows of an image.
@@ -39,11 +41,12 @@ pub enum Subject {
 
 impl Subject {
     /// All of them, with their names for programs and what each is in words.
-    pub const ALL: [(Self, &'static str, &'static str); 14] = [
+    pub const ALL: [(Self, &'static str, &'static str); 15] = [
         (Self::Precision, "precision", "the precision of image points"),
         (Self::GrossErrors, "gross-errors", "gross errors of image points"),
         (Self::Control, "control", "the coordinates of control points"),
         (Self::Distances, "distances", "measured distances"),
+        (Self::Board, "board", "the board as measured"),
         (Self::Lens, "lens", "the lens"),
         (Self::Shutter, "shutter", "one pose for all rows of an image"),
         (Self::Frame, "frame", "the size of the images"),

@@ -106,6 +106,18 @@ pub enum CalibrationError {
         /// Why there is none.
         why: &'static str,
     },
+    /// A board that cannot be measured.
+    #[error("the board cannot be measured: {why}")]
+    NotMeasured {
+        /// Why not, and what is expected.
+        why: &'static str,
+    },
+    /// A scale of the board beside others.
+    #[error("the scale of the board is stated and {why}: expected one of them")]
+    BoardScale {
+        /// What else says it.
+        why: &'static str,
+    },
     /// A parameter that is observed twice.
     #[error("parameter {parameter} is observed twice; expected one value with its standard deviation")]
     PriorTwice {

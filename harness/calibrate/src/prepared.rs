@@ -56,10 +56,11 @@ pub struct Prepared {
 ///
 /// # Errors
 /// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets, the shape of a board where there is
-/// none.
+/// none, a scale of the board beside another scale.
 pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
     let settings = with_shape(settings)?;
-    let survey = Arc::new(Survey::new(points, control)?);
+    settings.board.check(&settings)?;
+    let survey = Arc::new(Survey::new(points, &settings.board.applied(control))?);
     let against = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..settings.clone() };
     match prepared(&survey, &settings) {
         // Gross errors may be why.
@@ -110,6 +111,15 @@ impl Prepared {
 /// `settings` with the datum that a board's shape asks for: every corner is free in a free network, where the shape is no question of its own.
 fn with_shape(settings: &Settings) -> Result<Settings, CalibrationError> {
     let (mut settings, is_control) = (settings.clone(), !settings.datum.is_minimal());
+    if settings.board.is_measured {
+        match settings.shape {
+            BoardShape::Tested | BoardShape::Free => settings.shape = BoardShape::Free,
+            _ => return Err(CalibrationError::NotMeasured { why: "every corner is free when it is; expected --board-shape free" }),
+        }
+        if !settings.distances.is_empty() || !settings.stations.is_empty() {
+            return Err(CalibrationError::NotMeasured { why: "its scale and place are those of its nominal corners, and distances or poses are given" });
+        }
+    }
     match settings.shape {
         BoardShape::Free if is_control => settings.datum = DatumChoice::Free,
         BoardShape::Tested if !is_control => settings.shape = BoardShape::Free,

@@ -3,7 +3,7 @@
 use calibench_adjust::Variance;
 use calibench_model::{MeasuredDistance, ObservedStation};
 
-use crate::{BoardShape, DatumChoice, Discs, GrossErrors, Optics};
+use crate::{BoardShape, DatumChoice, Discs, GrossErrors, Optics, StatedBoard};
 
 /// How to calibrate.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub struct Settings {
     pub datum: DatumChoice,
     /// What is asked of the shape of a planar testfield.
     pub shape: BoardShape,
+    /// What is stated of a board beside its coordinates.
+    pub board: StatedBoard,
     /// What is done about image points in gross error.
     pub gross: GrossErrors,
     /// A-priori standard deviation of an image coordinate, px; `None` for [`USUAL_SIGMA`], about which nothing is known but its order of magnitude.
@@ -42,6 +44,7 @@ impl Settings {
             cameras,
             datum: DatumChoice::Control,
             shape: BoardShape::Flat,
+            board: StatedBoard::default(),
             gross: GrossErrors::default(),
             sigma_px: None,
             limit_px: None,

@@ -52,6 +52,9 @@ fn finished<T>(
 fn examined<'p>(mut calibration: Calibration<'p>, sets: &[Vec<String>]) -> Result<Calibration<'p>, CalibrationError> {
     calibration.resample();
     calibration.examine();
+    if calibration.prepared.settings.board.is_measured {
+        calibration.measure_board();
+    }
     if !sets.is_empty() {
         calibration.compare(sets)?;
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 use calibench_files::write_table;
 use calibench_model::{ControlDisc, ControlRow};
 
+use crate::board_corners::BOARD_COLUMNS;
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
 
@@ -16,6 +17,12 @@ const SIGMAS: [&str; 3] = ["sX", "sY", "sZ"];
 const RADIUS: [&str; 1] = ["radius"];
 const NORMAL: [&str; 3] = ["nX", "nY", "nZ"];
 
+/// What tables of intersected points and of measured boards have beside.
+const PASSED_OVER: [&str; 13] = {
+    let ([a, b, c, d, e, f], [g, h, i, j, k, l, m]) = (POINT_QUALITY_COLUMNS, BOARD_COLUMNS);
+    [a, b, c, d, e, f, g, h, i, j, k, l, m]
+};
+
 const FORM: Form = Form {
     what: "control file",
     key: "target",
@@ -24,11 +31,11 @@ const FORM: Form = Form {
     required: &["X", "Y", "Z"],
     optional: &[&SIGMAS, &RADIUS, &NORMAL],
     others: false,
-    passed_over: &POINT_QUALITY_COLUMNS,
+    passed_over: &PASSED_OVER,
 };
 
 /// Reads a control file: header `target,X,Y,Z`, optionally `sX,sY,sZ`, and of discs `radius` and `nX,nY,nZ`, in any order; rows may leave each of these groups
-/// empty. The columns that `intersect` writes beside them are passed over.
+/// empty. The columns that `intersect` and files of measured boards have beside them are passed over.
 ///
 /// # Errors
 /// The first mistake, with line and column: a missing or unknown column, a number that is none, a standard deviation or radius that is not positive, a normal

@@ -1,5 +1,6 @@
 //! Tables of other tools and of ours: image coordinates, control, distances, lengths, stations, and the list of rendered images.
 
+pub mod board_corners;
 pub mod control;
 mod csv_named_rows;
 pub mod distances;
@@ -11,6 +12,7 @@ pub mod rendered;
 pub mod stations;
 pub mod times;
 
+pub use board_corners::{read_board_corners, write_board_corners};
 pub use control::{POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use distances::read_distances;
 pub use fingerprint::Fingerprint;

@@ -1,10 +1,12 @@
 //! One calibration of many: the camera and its covariance, no report.
 
-use calibench_adjust::{ImageObservation, Network, Options, Residual, Variance, adjust};
-use calibench_calibrate::{CalibrationError, Prepared, Settings, Shape, prepare};
+use std::collections::HashMap;
+
+use calibench_adjust::{Datum, Network, Options, Residual, Variance, adjust};
+use calibench_calibrate::{CalibrationError, Prepared, Settings, Shape, part_of, prepare};
 use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::{PixelPoint, Pose};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Point3};
 
 use super::bend::Bend;
 use super::material::Material;
@@ -28,6 +30,8 @@ pub struct Calibrated {
     pub bend: Bend,
     /// Coefficients that the corners do not determine, held near zero by weak priors.
     pub held: Vec<String>,
+    /// Of a board whose corners are free: the corner of each point of the network. Empty of others.
+    corners: Vec<usize>,
     /// What was adjusted, its start values those of the result: where parts of it start.
     network: Network,
 }
@@ -38,22 +42,34 @@ pub struct Calibrated {
 /// As [`prepare`] and [`adjust`]: what cannot be determined, by name.
 pub fn calibrate(material: &Material, operator: usize, views: &[usize], settings: &Settings) -> Result<Calibrated, CalibrationError> {
     let prepared = prepare(material.points(operator, views), &material.field.control(), settings)?;
-    match Calibrated::of(&prepared, views) {
-        Err(error) if error.is_undetermined() => Calibrated::of(&prepared.held_weakly().ok_or(error)?, views),
+    match Calibrated::of(material, &prepared, views) {
+        Err(error) if error.is_undetermined() => Calibrated::of(material, &prepared.held_weakly().ok_or(error)?, views),
         found => found,
     }
 }
 
+/// The corner of each point of a network.
+fn corners(material: &Material, network: &Network) -> Vec<usize> {
+    let place: HashMap<String, usize> = (0..material.field.count()).map(|corner| (material.field.name(corner).into_owned(), corner)).collect();
+    network.points.iter().filter_map(|point| place.get(&point.name).copied()).collect()
+}
+
 impl Calibrated {
-    fn of(prepared: &Prepared, views: &[usize]) -> Result<Self, CalibrationError> {
+    fn of(material: &Material, prepared: &Prepared, views: &[usize]) -> Result<Self, CalibrationError> {
+        let corners = if prepared.network.datum == Datum::Inner { corners(material, &prepared.network) } else { Vec::new() };
         let bend = match &prepared.shape {
             Shape::Bent { board, .. } => Bend::of(board.clone()),
             _ => Bend::default(),
         };
-        Self::adjusted(prepared.network.clone(), views.to_vec(), (bend, prepared.held.clone()))
+        Self::adjusted(prepared.network.clone(), views.to_vec(), (bend, prepared.held.clone()), corners)
     }
 
-    fn adjusted(mut network: Network, views: Vec<usize>, (bend, held): (Bend, Vec<String>)) -> Result<Self, CalibrationError> {
+    fn adjusted(
+        mut network: Network,
+        views: Vec<usize>,
+        (bend, held): (Bend, Vec<String>),
+        corners: Vec<usize>,
+    ) -> Result<Self, CalibrationError> {
         let solution = adjust(&network, &Options::default())?;
         let (names, covariance) = solution.covariances(Variance::Estimated)?.of_camera(0);
         let mut counts = vec![0; views.len()];
@@ -61,11 +77,12 @@ impl Calibrated {
         let residuals = solution.rms_by_image().into_iter().map(Option::unwrap_or_default).zip(counts).collect();
         let (camera, poses, redundancy) = (solution.cameras()[0], solution.poses().to_vec(), solution.counts().redundancy());
         let coefficients = solution.surfaces().next();
+        let freed: Vec<(usize, Point3<f64>)> = corners.iter().copied().zip(solution.points().iter().copied()).collect();
         network.cameras[0].camera = camera;
         network.images.iter_mut().zip(poses).for_each(|(image, pose)| image.pose = pose);
         network.surfaces.iter_mut().zip(coefficients).for_each(|(surface, found)| surface.coefficients = found);
-        let bend = bend.with(coefficients.unwrap_or_default());
-        Ok(Self { camera, names, covariance, redundancy, views, residuals, bend, held, network })
+        let bend = bend.with(coefficients.unwrap_or_default()).freed(freed.into_iter());
+        Ok(Self { camera, names, covariance, redundancy, views, residuals, bend, held, corners, network })
     }
 
     /// The same from some of the views only. The result of all is where it starts, and no more than that.
@@ -73,15 +90,34 @@ impl Calibrated {
     /// # Errors
     /// As [`adjust`].
     pub fn part(&self, views: &[usize]) -> Result<Self, CalibrationError> {
-        let place: Vec<Option<usize>> = self.views.iter().map(|view| views.iter().position(|part| part == view)).collect();
-        let taken: Vec<usize> = (0..self.views.len()).filter(|&image| place[image].is_some()).collect();
-        let renumbered = |image: usize| taken.iter().position(|&taken| taken == image);
-        let images = taken.iter().map(|&image| self.network.images[image].clone()).collect();
-        let observations = self.network.observations.iter();
-        let observations = observations.filter_map(|o| Some(ImageObservation { image: renumbered(o.image)?, ..*o })).collect();
-        let network = Network { images, observations, ..self.network.clone() };
-        let views = taken.iter().map(|&image| self.views[image]).collect();
-        Self::adjusted(network, views, (self.bend.clone(), self.held.clone()))
+        let is_of = |image: usize| views.contains(&self.views[image]);
+        // A point that is free is where two views place it.
+        let least = if self.corners.is_empty() { 0 } else { 2 };
+        let (network, points) = part_of(&self.network, &[], is_of, least);
+        let corners = if self.corners.is_empty() { Vec::new() } else { points.iter().map(|&point| self.corners[point]).collect() };
+        let views = self.views.iter().copied().filter(|view| views.contains(view)).collect();
+        Self::adjusted(network, views, (self.bend.clone(), self.held.clone()), corners)
+    }
+
+    /// How far corners that are free are from where the field has them, and the standard deviations of that: root mean squares in the plane (2D) and along Z, object
+    /// units.
+    ///
+    /// # Errors
+    /// As [`adjust`].
+    pub fn moved(&self) -> Result<[(f64, f64); 2], CalibrationError> {
+        let solution = adjust(&self.network, &Options::default())?;
+        let covariances = solution.covariances(Variance::Estimated)?;
+        let of = |axes: &[usize]| {
+            let (mut moved, mut variance) = (0.0, 0.0);
+            for (k, at) in solution.points().iter().enumerate() {
+                let from = self.network.points[k].position;
+                moved += axes.iter().map(|&axis| (at[axis] - from[axis]).powi(2)).sum::<f64>();
+                variance += axes.iter().map(|&axis| covariances.points[k][(axis, axis)]).sum::<f64>();
+            }
+            let n = solution.points().len().max(1) as f64;
+            ((moved / n).sqrt(), (variance / n).max(0.0).sqrt())
+        };
+        Ok([of(&[0, 1]), of(&[2])])
     }
 
     /// What is left of each corner: its view, where it was measured and its residual (adjusted less observed), px.

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 
 use calibench_diagnostics::nearest;
+use calibench_calibrate::{OtherBoard, with_corners};
 use calibench_measure::Board;
 use calibench_model::boards::{self, BoardError};
-use calibench_model::{ControlRow, escape};
+use calibench_model::{BoardCorner, ControlRow, escape};
 
 /// A chessboard, or any points of known coordinates: marks on a house, a wall of targets.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,13 @@ pub enum Field {
     },
     /// Points by their names.
     Points(Vec<ControlRow>),
+    /// Either, with coordinates that were measured in the place of nominal ones.
+    Measured {
+        /// What it is nominally.
+        nominal: Box<Field>,
+        /// Of each point X, Y, Z, object units.
+        at: Vec<[f64; 3]>,
+    },
 }
 
 /// A board as what was photographed: a chessboard, or points of known coordinates.
@@ -40,6 +48,7 @@ impl Field {
         match self {
             Self::Board { board, .. } => board.corners(),
             Self::Points(points) => points.len(),
+            Self::Measured { nominal, .. } => nominal.count(),
         }
     }
 
@@ -48,6 +57,7 @@ impl Field {
         match self {
             Self::Board { board, .. } => board.target(point).into(),
             Self::Points(points) => points[point].target.as_str().into(),
+            Self::Measured { nominal, .. } => nominal.name(point),
         }
     }
 
@@ -56,18 +66,28 @@ impl Field {
         match self {
             Self::Board { board, side } => [(point % board.columns) as f64 * side, -((point / board.columns) as f64 * side), 0.0],
             Self::Points(points) => points[point].position,
+            Self::Measured { at, .. } => at[point],
         }
     }
 
     /// The points as control.
     pub fn control(&self) -> Vec<ControlRow> {
         match self {
-            Self::Board { .. } => (0..self.count()).map(|point| ControlRow::new(self.name(point), self.object(point))).collect(),
+            Self::Board { .. } | Self::Measured { .. } => (0..self.count()).map(|point| ControlRow::new(self.name(point), self.object(point))).collect(),
             Self::Points(points) => points.clone(),
         }
     }
 
-    /// Lines of points that are straight in object space: rows and columns of a board. Of other points none is known.
+    /// The same field with the coordinates that a file of measured corners has; their standard deviations are not used.
+    ///
+    /// # Errors
+    /// A file of another board.
+    pub fn measured(self, corners: &[BoardCorner]) -> Result<Self, OtherBoard> {
+        let at = with_corners(&self.control(), corners)?.into_iter().map(|row| row.position).collect();
+        Ok(Self::Measured { nominal: self.into(), at })
+    }
+
+    /// Lines of points that are straight in object space: rows and columns of a board. Of other points none is known, and measured ones are on none.
     pub fn lines(&self) -> Vec<Vec<usize>> {
         let Self::Board { board: Board { columns, rows }, .. } = *self else { return Vec::new() };
         let by_row = (0..rows).map(|row| (0..columns).map(|column| row * columns + column).collect());
@@ -81,6 +101,7 @@ impl Field {
             Self::Board { board: Board { columns, .. }, .. } => {
                 (0..self.count()).map(|point| (point % columns + point / columns).is_multiple_of(2)).collect()
             }
+            Self::Measured { ref nominal, .. } => return nominal.interleaved(),
             Self::Points(_) => self.ranks(0).into_iter().map(|rank| rank.is_multiple_of(2)).collect(),
         };
         let second = first.iter().map(|inside| !inside).collect();
@@ -95,6 +116,7 @@ impl Field {
                 (0..count).map(|point| 2 * (point % columns) < columns).collect(),
                 (0..count).map(|point| 2 * (point / columns) < rows).collect(),
             ],
+            Self::Measured { ref nominal, .. } => return nominal.sides(),
             Self::Points(_) => [0, 1].map(|extent| self.ranks(extent).into_iter().map(|rank| 2 * rank < count).collect()),
         };
         let other = |half: &Vec<bool>| half.iter().map(|inside| !inside).collect();
@@ -121,6 +143,9 @@ impl Field {
 
     /// What is expected in place of a name that none of the points has, and what to do.
     pub fn stranger(&self, target: &str) -> String {
+        if let Self::Measured { nominal, .. } = self {
+            return nominal.stranger(target);
+        }
         let names: Vec<Cow<'_, str>> = (0..self.count()).map(|point| self.name(point)).collect();
         let mut known: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         known.sort_unstable();
@@ -138,6 +163,7 @@ impl Field {
                 escape::name(first),
                 escape::name(last)
             ),
+            Self::Measured { .. } => String::new(),
         }
     }
 }

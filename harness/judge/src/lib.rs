@@ -4,6 +4,7 @@
 //! measure, place, value and what is predicted for it. [`Summary`](calibench_records::judgement::Summary) makes figures and a verdict of them, and nothing else does.
 
 mod bend;
+mod board;
 mod calibrated;
 mod camera_difference;
 mod corner_files;
@@ -34,6 +35,7 @@ use calibench_records::judgement::{Row, measure};
 use rayon::prelude::*;
 use thiserror::Error;
 
+pub use board::with_board;
 pub use corner_files::{CornerFile, CornerFilesError};
 pub use field::{Field, field_of};
 pub use halves::halves;

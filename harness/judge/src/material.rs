@@ -88,7 +88,7 @@ impl Material {
         let corners = self.operators[operator].at[view].iter().enumerate();
         corners
             .filter(|(corner, _)| chosen(*corner))
-            .filter_map(|(c, at)| Some(Control { object: bend.at(Point3::from(self.field.object(c))), image: (*at)? }))
+            .filter_map(|(c, at)| Some(Control { object: bend.at(c, Point3::from(self.field.object(c))), image: (*at)? }))
             .collect()
     }
 

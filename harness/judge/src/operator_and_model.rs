@@ -225,7 +225,7 @@ fn principal(found: &Calibrated, place: &str) -> Vec<Row> {
 }
 
 /// The views that are left out together.
-fn folds(views: &[usize]) -> Vec<Vec<usize>> {
+pub(super) fn folds(views: &[usize]) -> Vec<Vec<usize>> {
     let count = if views.len() <= EACH { views.len() } else { 10 };
     (0..count).map(|fold| views.iter().copied().skip(fold).step_by(count).collect()).collect()
 }

@@ -13,6 +13,23 @@ pub struct ControlRow {
     pub disc: Option<Box<ControlDisc>>,
 }
 
+/// A measured corner of a board, in the board's own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoardCorner {
+    /// Its name.
+    pub target: String,
+    /// X, Y, Z, object units.
+    pub position: [f64; 3],
+    /// Standard deviations of X, Y, Z, object units.
+    pub sigmas: [f64; 3],
+    /// Covariances of X and Y, X and Z, Y and Z, object units squared; `None` where they are not stated.
+    pub covariances: Option<[f64; 3]>,
+    /// Where it is nominally: X, Y, Z, object units; `None` where that is not stated.
+    pub nominal: Option<[f64; 3]>,
+    /// In how many photographs it was measured, 0 where its nominal place stands for it; `None` where that is not stated.
+    pub photographs: Option<usize>,
+}
+
 /// A measured distance between two targets, as the length of a scale bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredDistance {

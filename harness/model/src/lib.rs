@@ -27,7 +27,7 @@ pub mod told;
 pub mod views;
 pub mod warp;
 
-pub use control::{ControlDisc, ControlRow, MeasuredDistance, TestLength};
+pub use control::{BoardCorner, ControlDisc, ControlRow, MeasuredDistance, TestLength};
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
 pub use image::{Image, level};
 pub use median::{median, upper_median};

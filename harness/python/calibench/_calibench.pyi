@@ -455,13 +455,19 @@ def calibrate(
     snoop: Optional[bool] = None,
     compare: Optional[Sequence[Sequence[str]]] = None,
     limit: Optional[float] = None,
+    board_file: Optional[_Path] = None,
+    save_board: Optional[_Path] = None,
+    board_scale: Optional[Tuple[float, float]] = None,
+    print_noise: Optional[float] = None,
 ) -> Calibration:
     """Calibrate a camera: as `calibench calibrate --points --control` does.
 
     `xy` has one array for each image, with a row for each point of the board, NaN where it was not measured; what `measure`
     returned does as well, and its covariances are weights with `covariances=True`. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
     `board_shape`, `sigma` (px), `huber`, `snoop`, `compare` and `limit` (px) are as on the command line: `snoop=False` (`--plain` there) keeps all image points,
-    `True` leaves out all that Baarda's test rejects, `None` what is wrong for itself beyond doubt.
+    `True` leaves out all that Baarda's test rejects, `None` what is wrong for itself beyond doubt. `save_board` writes the board's own corners as these images show
+    them, `board_file` takes such a file; `board_scale` is (true over nominal length, standard deviation) of the print, `print_noise` the standard deviation of each
+    coordinate of a corner, in object units.
     """
 
 def diff(
@@ -511,11 +517,12 @@ def judge(
     seed: int = 0,
     camera: Optional[Camera] = None,
     margin: float = 1.0,
+    board_file: Optional[_Path] = None,
 ) -> Judgement:
     """Say which operator and which camera model to trust, without truth: as `calibench judge` does.
 
     Photographs of a chessboard by their paths; or points as `calibrate` takes them, of one operator, or of several by name.
-    With `camera`: whether it still holds within `margin` px.
+    With `camera`: whether it still holds within `margin` px. `board_file` has the board's own corners, which are taken as exact.
     """
 
 def league(

@@ -1,6 +1,10 @@
 //! What was photographed: a board in a word, or object coordinates as an array or by names.
 
+use std::path::PathBuf;
+
+use calibench_calibrate::{OtherBoard, with_corners};
 use calibench_cameras::read_kalibr_target;
+use calibench_exchange::read_board_corners;
 use calibench_judge::{Field, field_of};
 use calibench_model::{ControlRow, boards};
 use calibench_photographs::{Finder, board_of};
@@ -52,6 +56,18 @@ impl Board {
             return Err(input(format!("board: the coordinates of point {} are not finite", row.target)));
         }
         Ok(Self { field: Field::Points(control.clone()), control, pictured: None })
+    }
+
+    /// The same with the corners that a file of a measured board has.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is of another board.
+    pub fn with_file(self, file: Option<PathBuf>) -> PyResult<Self> {
+        let Some(path) = file else { return Ok(self) };
+        let corners = read_board_corners(&path).map_err(input)?;
+        let wrong = |error: OtherBoard| input(format!("board_file: {}: {error}", path.display()));
+        let control = with_corners(&self.control, &corners).map_err(wrong)?;
+        Ok(Self { control, field: self.field.measured(&corners).map_err(wrong)?, pictured: self.pictured })
     }
 
     /// Names of its points, in the order in which arrays have them.

@@ -1,12 +1,15 @@
 //! `calibrate`: a camera from measured points.
 
 use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
-    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, Suspected,
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, StatedBoard, Suspected,
     calibrate as solve, prepare, suspected,
 };
+use calibench_exchange::write_board_corners;
+use calibench_files::OutputFile;
 use calibench_judge::BENT;
 use calibench_model::NamedCamera;
 use calibench_model::Pose as Exterior;
@@ -184,7 +187,8 @@ impl Calibration {
 /// Calibrates a camera from measured points: as `calibench calibrate --points --control` does.
 #[pyfunction]
 #[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, start = None, datum = "control",
-    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = None, compare = None, limit = None))]
+    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = None, compare = None, limit = None,
+    board_file = None, save_board = None, board_scale = None, print_noise = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn calibrate(
     py: Python<'_>,
@@ -205,8 +209,15 @@ pub fn calibrate(
     snoop: Option<bool>,
     compare: Option<Vec<Vec<String>>>,
     limit: Option<f64>,
+    board_file: Option<PathBuf>,
+    save_board: Option<PathBuf>,
+    board_scale: Option<(f64, f64)>,
+    print_noise: Option<f64>,
 ) -> PyResult<Calibration> {
-    let board = Board::of(board)?;
+    if board_file.is_some() && save_board.is_some() {
+        return Err(input("board_file and save_board: one or the other"));
+    }
+    let board = Board::of(board)?.with_file(board_file)?;
     let names = image_names(images, xy.len())?;
     let points = points(&xy, &names, &board)?;
     let (model, bent) = lens_and_board(model);
@@ -221,6 +232,11 @@ pub fn calibrate(
     };
     let settings = Settings {
         datum: datum.parse().map_err(input)?,
+        board: StatedBoard {
+            scale: board_scale.map(|(value, sigma)| format!("{value}:{sigma}").parse()).transpose().map_err(input)?,
+            noise: positive(print_noise, "print_noise")?,
+            is_measured: save_board.is_some(),
+        },
         shape: if bent && board_shape == "tested" { BoardShape::Bent } else { board_shape.parse().map_err(input)? },
         gross: gross(positive(huber, "huber")?, snoop)?,
         sigma_px: positive(sigma, "sigma")?,
@@ -240,6 +256,7 @@ pub fn calibrate(
         let prepared = prepare(points, &board.control, &settings).map_err(explained)?;
         let solved = self::solve(&prepared, &compare.unwrap_or_default(), |calibration| {
             let suspects = if calibration.doubts().is_empty() { Vec::new() } else { suspects(Ok(calibration)) };
+            save_board.as_deref().map_or(Ok(()), |path| save(path, calibration, &board))?;
             done(calibration, suspects, &names, &board)
         });
         solved.map_err(explained)
@@ -250,6 +267,19 @@ pub fn calibrate(
         doubt(py, &text)?;
     }
     Ok(Calibration { camera: Py::new(py, Camera::new(named))?, done })
+}
+
+/// Writes the board that was measured.
+fn save(path: &Path, calibration: &Solved<'_>, board: &Board) -> Result<(), String> {
+    match &calibration.measured_board {
+        Some(Ok(found)) => {
+            let corners = found.all(&board.control, &calibration.prepared.settings.board);
+            let output = OutputFile::open(path).map_err(|error| error.to_string())?;
+            output.write(|file| write_board_corners(file, &corners)).map_err(|error| error.to_string())
+        }
+        Some(Err(why)) => Err(format!("save_board: the board cannot be measured: {why}")),
+        None => Ok(()),
+    }
 }
 
 /// A model as `judge` names it: the lens, and whether the board is bent.

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
 use calibench_exchange::PointFile;
-use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
+use calibench_judge::{
+    CornerFile, Expected, JudgementError, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models, with_board,
+};
 use calibench_model::{LostRow, LostRows};
 use calibench_photographs::{Finder, MeasuredBoards, Reader, measured_boards, method_info};
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
@@ -89,12 +91,14 @@ struct Asked {
     splits: u64,
     seed: u64,
     margin: f64,
+    /// Whether the board's share is asked for.
+    of_board: bool,
 }
 
 /// Says which operator, or whose points, and which camera model to trust: as `calibench judge` does.
 #[pyfunction]
 #[pyo3(signature = (what, board, *, size = None, images = None, methods = None, models = None, pitch = None, splits = 10, seed = 0, camera = None,
-    margin = 1.0))]
+    margin = 1.0, board_file = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn judge(
     py: Python<'_>,
@@ -109,15 +113,17 @@ pub fn judge(
     seed: u64,
     camera: Option<&Camera>,
     margin: f64,
+    board_file: Option<PathBuf>,
 ) -> PyResult<Judgement> {
-    let board = Board::of(board)?;
+    let board = Board::of(board)?.with_file(board_file)?;
     let texts = models.unwrap_or_else(|| usual_models(board.pictured.is_some()));
     let models = ModelChoice::parse_all(&texts).map_err(|(place, error)| input(format!("models: {}: {error}", texts[place])))?;
     if !(1..=1000).contains(&splits) {
         return Err(input(format!("splits: {splits}; expected 1 to 1000")));
     }
     positive(Some(margin), "margin")?;
-    let asked = Asked { models, pitch_um: positive(pitch, "pitch")?, splits, seed, margin };
+    let of_board = board.pictured.is_some() && camera.is_none();
+    let asked = Asked { models, pitch_um: positive(pitch, "pitch")?, splits, seed, margin, of_board };
     let material = match what.extract::<Vec<PathBuf>>() {
         Ok(_) if size.is_some() || images.is_some() => return Err(input("size and images are of points; photographs say both themselves")),
         Ok(photos) => of_photographs(py, &photos, &board, methods, camera.is_some())?,
@@ -138,7 +144,11 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
         published: camera.map(|camera| camera.named.camera),
         published_sigma: camera.and_then(|camera| stated_sigma(&camera.named)),
     };
-    let rows = interruptible(py, || judged(material, &options))?.map_err(input)?;
+    let rows = interruptible(py, || {
+        let rows = judged(material, &options)?;
+        Ok::<_, JudgementError>(if asked.of_board { with_board(rows, material, &options) } else { rows })
+    });
+    let rows = rows?.map_err(input)?;
     let summary = Summary { limit_px: Some(usual_limit_px(material.size)), ..Summary::new(&rows, asked.seed) };
     let Some(trusted) = summary.trusted() else { return Err(input(section(&summary).0)) };
     // Where the two cannot be compared over the frame the photographs cannot tell.

@@ -20,7 +20,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use crate::allowed::{Allowed, Verdicts};
 use crate::ended::ended;
 use crate::resampled::MOST;
-use crate::{Calibration, Checked, Doubt, Finding, OverFrame, Resampled, SHARE, Subject, Verdict};
+use crate::{Calibration, Checked, Doubt, Finding, MeasuredBoard, OverFrame, Resampled, SHARE, Subject, Verdict};
 
 /// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
 pub(crate) const ALPHA: f64 = 1e-4;
@@ -101,6 +101,8 @@ impl Calibration<'_> {
         let explains = |doubt: &Doubt| doubt.finding.map_or(0.0, |finding| finding.explains);
         let mut doubts: Vec<Doubt> = self.checked.iter().filter_map(Checked::doubt).collect();
         doubts.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
+        let of_board = self.measured_board.iter().flatten().flat_map(MeasuredBoard::doubts);
+        doubts.extend(of_board.map(|words| Doubt::of_all(Subject::Board, words)));
         doubts.extend(self.impossible.iter().chain(&self.uncertain).cloned());
         doubts
     }

@@ -9,7 +9,7 @@ use super::pairing::{Moments, Pairing};
 use super::start::{Seen, mounts, stations};
 use crate::ended::ITERATIONS;
 use crate::start::{control_of, robust_pose_of};
-use crate::{BoardShape, CalibrationError, DatumChoice, GrossErrors, Prepared, Settings, Survey, few, optics, prepare};
+use crate::{BoardShape, CalibrationError, DatumChoice, GrossErrors, Prepared, Settings, StatedBoard, Survey, few, optics, prepare};
 
 /// Known points of an image from which its own pose is looked for.
 const LEAST: usize = 6;
@@ -114,6 +114,9 @@ fn own_settings(settings: &Settings) -> Result<Settings, CalibrationError> {
     }
     if !settings.stations.is_empty() {
         return refused("--poses are given");
+    }
+    if settings.board != StatedBoard::default() {
+        return refused("--board-scale, --print-noise or --save-board is given");
     }
     if matches!(settings.gross, GrossErrors::Weighted(_)) {
         return Err(CalibrationError::Rig("--huber is not there for a rig: expected --snoop, --plain or neither".into()));

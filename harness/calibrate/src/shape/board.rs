@@ -72,6 +72,22 @@ pub(crate) fn board(network: &Network) -> Result<Board, &'static str> {
     if points.len() < LEAST {
         return Err("there are fewer than nine fixed control points");
     }
+    let (mean, normal) = plane(&points)?;
+    let normal = towards(network, mean, normal);
+    let [u, v] = in_plane(&normal);
+    let extent = |axis: &Vector3<f64>| {
+        let along = points.iter().map(|point| point.coords.dot(axis));
+        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+        [0.5 * (low + high), 0.5 * (high - low)]
+    };
+    let [[mu, hu], [mv, hv]] = [extent(&u), extent(&v)];
+    let middle = Point3::from(u * mu + v * mv + normal * normal.dot(&mean));
+    let board = Board { middle, axes: [u, v, normal], half: [hu, hv] };
+    if spans(&board, &points) { Ok(board) } else { Err("its points are too few to tell a bend from a tilt") }
+}
+
+/// The middle of points in a plane, and its normal, either way.
+fn plane(points: &[Point3<f64>]) -> Result<(Vector3<f64>, Vector3<f64>), &'static str> {
     let mean = points.iter().map(|point| point.coords).sum::<Vector3<f64>>() / points.len() as f64;
     let spread: Matrix3<f64> = points.iter().map(|point| (point.coords - mean) * (point.coords - mean).transpose()).sum();
     let eigen = SymmetricEigen::new(spread);
@@ -84,17 +100,13 @@ pub(crate) fn board(network: &Network) -> Result<Board, &'static str> {
     if middle < STRIP * long {
         return Err("the control points lie along a line");
     }
-    let normal = towards(network, mean, eigen.eigenvectors.column(order[0]).into_owned());
-    let [u, v] = in_plane(&normal);
-    let extent = |axis: &Vector3<f64>| {
-        let along = points.iter().map(|point| point.coords.dot(axis));
-        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
-        [0.5 * (low + high), 0.5 * (high - low)]
-    };
-    let [[mu, hu], [mv, hv]] = [extent(&u), extent(&v)];
-    let middle = Point3::from(u * mu + v * mv + normal * normal.dot(&mean));
-    let board = Board { middle, axes: [u, v, normal], half: [hu, hv] };
-    if spans(&board, &points) { Ok(board) } else { Err("its points are too few to tell a bend from a tilt") }
+    Ok((mean, eigen.eigenvectors.column(order[0]).into_owned()))
+}
+
+/// Whether the object points of `network`, whatever is known of them, are those of a board.
+pub(crate) fn is_flat(network: &Network) -> bool {
+    let points: Vec<Point3<f64>> = network.points.iter().map(|point| point.position).collect();
+    points.len() >= LEAST && plane(&points).is_ok()
 }
 
 /// The normal on the side of most projection centres.

@@ -1,10 +1,11 @@
 //! Whether the board on which control lies is flat, and how it is bent.
 
 pub(crate) mod board;
-mod test;
+pub(crate) mod test;
 
 use calibench_adjust::{AdjustError, Network, Status, Surface};
 
+pub(crate) use board::is_flat;
 pub use board::Board;
 pub use test::Bend;
 
@@ -71,7 +72,7 @@ fn untested(error: &AdjustError) -> String {
 }
 
 /// The bent board of `network`, from `start`.
-fn surface(network: &Network, board: &Board, shape: BoardShape, start: [f64; 3]) -> Surface {
+pub(crate) fn surface(network: &Network, board: &Board, shape: BoardShape, start: [f64; 3]) -> Surface {
     let third = if shape == BoardShape::BentAxes { Status::Fixed } else { Status::Free };
     Surface {
         name: "the bend of the board".into(),

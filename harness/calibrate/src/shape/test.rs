@@ -33,7 +33,7 @@ impl Bend {
 }
 
 /// The bend that the observations show, and its test; `None` where residuals are rounding.
-pub(super) fn bend(network: &Network, board: &Board, settings: &Settings) -> Result<Option<Bend>, AdjustError> {
+pub(crate) fn bend(network: &Network, board: &Board, settings: &Settings) -> Result<Option<Bend>, AdjustError> {
     let plain = Options { huber: settings.gross.huber(), most_iterations: ITERATIONS, ..Options::default() };
     let first = adjust(network, &plain)?;
     let Some(scale) = first.scale().filter(|scale| scale * scale > ROUNDING) else { return Ok(None) };

@@ -2,7 +2,7 @@
 
 mod alternatives;
 mod frame;
-mod raster;
+pub(crate) mod raster;
 mod scale;
 mod shape;
 

@@ -61,14 +61,15 @@ impl Raster {
 }
 
 /// Ascending, each once.
-fn distinct(mut values: Vec<f64>) -> Vec<f64> {
+pub(crate) fn distinct(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let extent = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
     values.dedup_by(|a, b| (*a - *b).abs() <= SAME * extent);
     values
 }
 
-fn nearest(values: &[f64], value: f64) -> usize {
+/// The place of the value that is nearest to `value`.
+pub(crate) fn nearest(values: &[f64], value: f64) -> usize {
     (0..values.len()).min_by(|&a, &b| (values[a] - value).abs().total_cmp(&(values[b] - value).abs())).unwrap_or(0)
 }
 

@@ -1,5 +1,6 @@
 //! Calibrations of networks with a known truth.
 
+mod boards;
 mod broken;
 mod doubts;
 mod free;

@@ -27,6 +27,7 @@ use crate::board::{HELP, board_of};
 use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
+mod board;
 mod camera_file;
 mod cameras;
 pub mod certificate;
@@ -34,6 +35,7 @@ mod photographs;
 mod reconstruction;
 mod rig;
 
+use board::BoardArguments;
 use cameras::Cameras;
 use certificate::Asked;
 pub use photographs::corners;
@@ -85,9 +87,11 @@ pub struct Calibrate {
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, free:A,B,C,... (these targets stay closest to their start values), or minimal:A,B,C,D,E (X and Y of two, Z of three) [default: control; without --control free]
     #[arg(long, value_name = "DATUM")]
     datum: Option<DatumChoice>,
-    /// Shape of a board of control points: tested (bent where the points say so), flat, bent (a surface of second order), bent-axes (mrcal's two parameters), or free (every point, as with --datum free)
-    #[arg(long, value_name = "SHAPE", default_value = "tested")]
-    board_shape: BoardShape,
+    /// Shape of a board of control points: tested (bent where the points say so), flat, bent (a surface of second order), bent-axes (mrcal's two parameters), or free (every point, as with --datum free) [default: tested]
+    #[arg(long, value_name = "SHAPE")]
+    board_shape: Option<BoardShape>,
+    #[command(flatten)]
+    known: BoardArguments,
     /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]
     #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     sigma: Option<f64>,
@@ -140,6 +144,7 @@ pub struct Calibrate {
 struct Outputs {
     camera: Option<OutputFile>,
     scene: Option<OutputFile>,
+    board: Option<OutputFile>,
     report: Option<OutputFolder>,
     certificate: Option<Asked>,
 }
@@ -170,7 +175,7 @@ impl Calibrate {
             return self.run_reconstruction(path, context);
         }
         let given = [&self.points, &self.control, &self.approx, &self.distances, &self.poses].into_iter().flatten().cloned();
-        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
+        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.known.inputs().cloned()).chain(self.cameras.starts()));
         let outputs = self.outputs(&inputs)?;
         let Input { points, lost, photos, reading, control, is_free, doubts } = self.input(context)?;
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
@@ -194,7 +199,7 @@ impl Calibrate {
             let suspects = if in_doubt { suspects(Ok(calibration)) } else { Vec::new() };
             // What one place refuses is not lost for the others.
             let told = self.tell(calibration, &doubts, &suspects);
-            let delivered = self.deliver(calibration, (&photos, reading, &doubts), &suspects, &outputs);
+            let delivered = self.deliver(calibration, (&photos, reading, &doubts), &suspects, (&outputs, &control));
             let is_certified_in_doubt = told.and(delivered)?;
             if in_doubt || is_certified_in_doubt { Err(Failure::Doubt) } else { Ok(()) }
         })
@@ -206,7 +211,9 @@ impl Calibrate {
         let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), inputs)).transpose()?;
         let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, inputs)).transpose()?;
         let certificate = self.certified(inputs)?;
-        Ok(Outputs { camera, scene, report, certificate })
+        let board = self.known.output(inputs)?;
+        output::distinct(("-o", camera.as_ref()), ("--save-board", board.as_ref()))?;
+        Ok(Outputs { camera, scene, board, report, certificate })
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
@@ -233,7 +240,7 @@ impl Calibrate {
                 let (Corners { points, lost, photos, doubts }, reading) =
                     corners(context, &finder, &|| self.reader(), self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
-                Ok(Input { points, lost, photos, reading, control: finder.control(), is_free: false, doubts })
+                Ok(Input { points, lost, photos, reading, control: self.known.corners(finder.control())?, is_free: false, doubts })
             }
             _ => Err(Failure::input("expected --points and --size, with --control or --distances, or photographs and --board")),
         }
@@ -257,7 +264,8 @@ impl Calibrate {
             datum: self.datum(),
             distances: self.distances.as_deref().map(read_distances).transpose()?.unwrap_or_default(),
             lengths: self.length.clone(),
-            shape: self.board_shape,
+            shape: self.known.shape(self.board_shape)?,
+            board: self.known.stated(),
             gross: self.gross(),
             sigma_px: self.sigma,
             limit_px: self.limit,
@@ -297,7 +305,7 @@ impl Calibrate {
         calibration: &Calibration<'_>,
         (photos, reading, doubts): (&[Photo], Reading, &[String]),
         suspects: &[Suspected],
-        outputs: &Outputs,
+        (outputs, control): (&Outputs, &[ControlRow]),
     ) -> Result<bool, Failure> {
         let (photos_measured, found) = (photos, doubts);
         let doubts: Vec<String> = doubts.iter().cloned().chain(suspects.iter().map(Suspected::words)).collect();
@@ -312,8 +320,10 @@ impl Calibrate {
             })
         };
         let report = outputs.report.as_ref().map_or(Ok(()), report);
+        let board = self.known.deliver(outputs.board.as_ref(), calibration, control);
         camera?;
         scene?;
+        board?;
         report?;
         recorded?.zip(outputs.certificate.as_ref()).map_or(Ok(false), |(recorded, (output, fields))| recorded.write(fields, output))
     }

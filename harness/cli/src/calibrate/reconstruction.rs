@@ -20,7 +20,7 @@ pub struct ReconstructionArguments {
     /// A reconstruction with its image points, adjusted anew as a free network: a folder with COLMAP's cameras, images and points3D, Bundler's bundle.out, OpenMVG's sfm_data.json, or a problem of Bundle Adjustment in the Large
     #[arg(long = "reconstruction", value_name = "FILE", id = "reconstruction",
           conflicts_with_all = ["photos", "points", "control", "approx", "poses", "claims", "pitch", "model", "priors", "start", "names",
-                                "board_shape", "eccentricity", "covariances", "certificate"])]
+                                "board_shape", "board_file", "save_board", "board_scale", "print_noise", "eccentricity", "covariances", "certificate"])]
     pub path: Option<PathBuf>,
     /// Image points of points behind their cameras, where nothing is seen: count them by the line through the projection centre, as most tools do, or leave them out; they are named
     #[arg(long, value_enum, value_name = "WHAT", default_value = "count", requires = "reconstruction")]
@@ -65,7 +65,7 @@ impl Calibrate {
         calibrate(&found.prepared, &sets(&self.compare)?, |calibration| {
             doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
             let told = self.tell(calibration, &doubts, &[]);
-            let delivered = self.deliver(calibration, (&[], Reading::default(), &doubts), &[], &outputs);
+            let delivered = self.deliver(calibration, (&[], Reading::default(), &doubts), &[], (&outputs, &[]));
             let written = adjusted.as_ref().map_or(Ok(()), |folder| write(folder, calibration, &reconstruction));
             told.and(delivered.map(|_| ())).and(written)?;
             if calibration.doubts().is_empty() && doubts.is_empty() { Ok(()) } else { Err(Failure::Doubt) }

@@ -95,7 +95,7 @@ impl Calibrate {
     /// As [`Calibrate::run`], of a rig.
     pub(super) fn run_rig(&self, context: &Context<'_>) -> Result<(), Failure> {
         let given = [&self.points, &self.control, &self.rig.times].into_iter().flatten().cloned();
-        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
+        let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.known.inputs().cloned()).chain(self.cameras.starts()));
         let folder = self.output.as_deref().map(|path| output::folder("-o", path, &inputs, ("calibrate", None))).transpose()?;
         let names = rig_names(&self.rig.names)?;
         let patterns = self.rig.sync.as_deref().map(|text| patterns(text, &names)).transpose()?;

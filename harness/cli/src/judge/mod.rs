@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::usual_limit_px;
 use calibench_cameras::{first_camera, inputs_of};
-use calibench_exchange::read_control;
+use calibench_exchange::{read_board_corners, read_control};
 use calibench_images::Reading;
-use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, stated_sigma, usual_models};
+use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, stated_sigma, usual_models, with_board};
 use calibench_model::NamedCamera;
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
@@ -50,6 +50,9 @@ pub struct Judge {
     #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP,
           required_unless_present = "control", conflicts_with = "control")]
     board: Option<Board>,
+    /// The board's own corners, as `calibrate --save-board` writes them, in place of nominal ones; taken as exact
+    #[arg(long, value_name = "CSV", requires = "board")]
+    board_file: Option<PathBuf>,
     /// Each of several such boards in a photograph, from the left: each is a view, PHOTO#1, PHOTO#2, ..., with a pose of its own
     #[arg(long, requires = "photos")]
     all: bool,
@@ -109,7 +112,7 @@ impl Judge {
         }
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
-        let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
+        let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control).chain(&self.board_file));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("judge", None))).transpose()?;
         let (material, doubts, reading) = self.material(context)?;
         let size = material.size;
@@ -125,6 +128,9 @@ impl Judge {
             published_sigma: published.as_ref().and_then(stated_sigma),
         };
         let rows = judge(&material, &options)?;
+        // Of a camera in use it is asked whether it holds, and nothing of the board.
+        let of_board = self.board.is_some() && self.camera.is_none();
+        let rows = if of_board { with_board(rows, &material, &options) } else { rows };
         // With a camera in use, which may differ by so much, --limit is of that unless --margin is.
         let is_of_use = self.camera.is_some() && self.margin.is_none();
         let limit_px = Some(self.limit.filter(|_| !is_of_use).unwrap_or_else(|| usual_limit_px(size)));
@@ -184,15 +190,17 @@ impl Judge {
         let read = |field, size| Ok((files::material(&self.points, field, size)?, Vec::new(), Reading::default()));
         match (self.size, &self.control, self.board) {
             (Some(size), Some(control), _) => read(Field::Points(read_control(control)?), size),
-            (Some(size), None, Some(board)) => read(field_of(board)?, size),
+            (Some(size), None, Some(board)) => read(self.field_of(board)?, size),
             (_, _, Some(board)) => self.measured(context, board),
             // The arguments' own rules leave nothing else.
             _ => Err(Failure::input("expected --board, or --control with --points and --size")),
         }
     }
-}
-
-/// What is judged by: a chessboard, or points of known coordinates.
-fn field_of(board: Board) -> Result<Field, Failure> {
-    field(&board).map_err(|error| Failure::input(error.to_string()))
+    /// What is judged by: a chessboard, or points of known coordinates; with the corners of a file where one is given.
+    fn field_of(&self, board: Board) -> Result<Field, Failure> {
+        let field = field(&board).map_err(|error| Failure::input(error.to_string()))?;
+        let Some(path) = &self.board_file else { return Ok(field) };
+        let corners = read_board_corners(path)?;
+        field.measured(&corners).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+    }
 }

@@ -75,13 +75,17 @@ impl Judge {
     }
 
     fn field(&self) -> String {
-        match (&self.control, self.board) {
+        let named = match (&self.control, self.board) {
             (Some(control), _) => format!("the points of {}", code(&control.display().to_string())),
             (None, Some(Board::Chessboard(Chessboard { columns, rows, square }))) => {
                 format!("a chessboard of {columns} x {rows} inner corners, squares of {square}")
             }
             (None, Some(board)) => format!("the board `{board}`"),
             (None, None) => "a chessboard".into(),
+        };
+        match &self.board_file {
+            Some(path) => format!("{named}, whose corners are those of {}, taken as exact", code(&path.display().to_string())),
+            None => named,
         }
     }
 }

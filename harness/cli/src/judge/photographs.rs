@@ -11,7 +11,7 @@ use super::super::context::{Context, finder};
 use super::super::notes::say_notes;
 use super::super::photos::of_one_camera;
 use super::super::progress::Progress;
-use super::{Judge, field_of};
+use super::Judge;
 use crate::failure::Failure;
 
 impl Judge {
@@ -39,6 +39,6 @@ impl Judge {
         }
         say_notes(&methods);
         let infos: Vec<_> = methods.iter().map(method_info).collect();
-        Ok((Material::new(&trial, &infos, field_of(board)?, size), doubts, reader.reading()))
+        Ok((Material::new(&trial, &infos, self.field_of(board)?, size), doubts, reader.reading()))
     }
 }

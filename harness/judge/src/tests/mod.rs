@@ -1,5 +1,6 @@
 //! Boards whose truth is known, with Gaussian noise on their corners: what is measured without truth must agree with it.
 
+mod boards;
 mod fields;
 mod honest;
 mod left;
@@ -32,11 +33,11 @@ fn camera() -> Camera {
     OpenCv { size: SIZE, fx: 536.0, fy: 536.0, cx: 338.0, cy: 234.0, distortion, coefficients: 5 }.into()
 }
 
-/// A board seen whole from `count` stations.
-fn views(key: Key<'_>, count: usize) -> Vec<Vec<PixelPoint>> {
+/// A board seen whole from `count` stations, its corners moved by `moved`, mm.
+fn views(key: Key<'_>, count: usize, moved: &dyn Fn(usize) -> Vector3<f64>) -> Vec<Vec<PixelPoint>> {
     let (camera, mut rng) = (camera(), stream(key, Purpose::Station));
     let middle = Point3::new(4.0 * SIDE, -2.5 * SIDE, 0.0);
-    let corner = |k: usize| Point3::new((k % 9) as f64 * SIDE, -((k / 9) as f64 * SIDE), 0.0);
+    let corner = |k: usize| Point3::new((k % 9) as f64 * SIDE, -((k / 9) as f64 * SIDE), 0.0) + moved(k);
     let mut found = Vec::new();
     while found.len() < count {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.random::<f64>();
@@ -55,8 +56,12 @@ fn views(key: Key<'_>, count: usize) -> Vec<Vec<PixelPoint>> {
 
 /// What operators with these standard deviations (px) measure of `count` views in a trial.
 fn material(scenario: &str, trial: u64, count: usize, sigmas: &[f64]) -> Material {
-    let key = Key { seed: 7, of: scenario, trial, view: "", target: "" };
-    let truth = views(key, count);
+    material_of(Key { seed: 7, of: scenario, trial, view: "", target: "" }, count, sigmas, &|_| Vector3::zeros())
+}
+
+/// The same of a board whose corners are moved.
+fn material_of(key: Key<'_>, count: usize, sigmas: &[f64], moved: &dyn Fn(usize) -> Vector3<f64>) -> Material {
+    let truth = views(key, count, moved);
     let names: Vec<Arc<str>> = (1..=count).map(|view| format!("v{view:02}").into()).collect();
     let operator = |(index, sigma): (usize, &f64)| {
         let name = format!("operator-{}", index + 1);

@@ -42,3 +42,9 @@ pub const PUBLISHED_MOST: &str = "published_most";
 pub const PUBLISHED_SEEN: &str = "published_seen";
 /// By view: RMS residual of our corners with the published camera held.
 pub const PUBLISHED_VIEW: &str = "published_view";
+/// By view: as [`HOLDOUT`], the corners of the board freed in the other views.
+pub const BOARD_FREED: &str = "board_freed";
+/// By view: as [`HOLDOUT`], with nominal corners in the place of measured ones.
+pub const BOARD_NOMINAL: &str = "board_nominal";
+/// `in the plane` (2D), `across`: how far freed corners are from where the field has them, RMS; beside it the standard deviation of that.
+pub const BOARD_MOVED: &str = "board_moved";

@@ -8,7 +8,7 @@ mod summary;
 pub use outlier::{ALPHA as OUTLIER_ALPHA, outliers};
 pub use rows::{JUDGEMENT, RECORDED_JUDGEMENT, Row, read_rows, write_rows};
 pub use summary::{
-    ALPHA, Beside, Cell, Estimate, HONEST, InUse, MARGIN_PX, Measured, Point, Predicted, Principal, Published, Split, Standing, StillHolds,
+    ALPHA, Beside, BoardShare, Cell, Estimate, FreedCorners, HONEST, InUse, MARGIN_PX, Measured, OtherCorners, Point, Predicted, Principal, Published, Split, Standing, StillHolds,
     Summary, Trusted, View,
 };
 

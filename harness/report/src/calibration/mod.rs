@@ -9,6 +9,7 @@ mod figures;
 mod html;
 mod lengths;
 mod limits;
+mod measured_board;
 mod next;
 mod page;
 mod ply;

@@ -14,7 +14,7 @@ use super::html;
 use super::next::NextSection;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, figures, images_of, lengths, sets_page, tables};
+use super::{board, checks, discs, figures, images_of, lengths, measured_board, sets_page, tables};
 use crate::canvas::write_pictures;
 use crate::corners::Pictured;
 use crate::html::Figures;
@@ -90,7 +90,7 @@ fn rest(calibration: &Calibration<'_>, (pictures, distortion): (&[(String, Strin
     text.push_str(
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
          targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), of a \
-         board `board.csv` (its bend), of lengths `distances.csv`; `uncertainty.csv` (the maps' numbers, px).\n",
+         board `board.csv` (its bend) and, where it was measured, `board-corners.csv`, of lengths `distances.csv`; `uncertainty.csv` (the maps' numbers, px).\n",
     );
     text
 }
@@ -167,6 +167,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
         format!("residuals {} px RMS", plain(calibration.rms_px())),
     ]);
     lines.extend(board::fact(calibration));
+    lines.extend(measured_board::facts(calibration));
     lines.extend(discs::fact(calibration));
     lines.extend(observed(calibration));
     if let Some(sigma0) = solution.sigma0() {

@@ -23,6 +23,7 @@ pub(super) fn write(calibration: &Calibration<'_>, maps: &[Vec<UncertaintyMap>],
     correlations(calibration, folder)?;
     stations(calibration, folder)?;
     super::board::table(calibration, folder)?;
+    super::measured_board::table(calibration, folder)?;
     super::lengths::write(calibration, folder)?;
     super::uncertainty::write(calibration, maps, folder)?;
     let rows = object_points(calibration);

@@ -1,18 +1,19 @@
 //! A calibration as JSON.
 
 use calibench_adjust::{Significance, Use};
-use calibench_calibrate::{Calibration, Checked, Finding, Shape, Suspected, Verdict};
+use calibench_calibrate::{Calibration, Checked, Finding, Suspected, Verdict};
 use calibench_exchange::station_numbers;
 use calibench_model::NamedCamera;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::board::{Board, board};
 use super::compared::Set;
 use super::doubted::Doubted;
 use super::lengths::{Length, lengths};
 use super::next::NextAnswer;
 use super::{Answer, CameraAnswer};
-use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, warnings};
+use crate::calibration::{CORRELATED, images_of, points_by_image, warnings};
 
 /// A calibration and its quality.
 #[derive(Serialize, JsonSchema)]
@@ -51,6 +52,8 @@ pub struct CalibrationAnswer {
     rivals: Vec<Rival>,
     /// The shape of a planar testfield.
     board: Board,
+    /// What of the object's coordinates takes no part in the standard deviations, since nobody stated how exact it is, in words.
+    taken_as_exact: Vec<String>,
     /// The images, with their exterior orientations.
     images: Vec<Image>,
     /// Image points that Baarda's test rejected.
@@ -187,20 +190,6 @@ struct Rival {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Board {
-    /// `untouched` (not asked for), `untested`, `flat` (as far as the images tell) or `bent`.
-    shape: &'static str,
-    /// Why it was not tested.
-    why: Option<String>,
-    /// The bend along u, along v and its twist, object units, positive towards the camera.
-    bend: Option<[f64; 3]>,
-    /// Standard deviations of these.
-    sigma: Option<[f64; 3]>,
-    /// Probability of as much of a bend by chance, if the board is flat.
-    p: Option<f64>,
-}
-
-#[derive(Serialize, JsonSchema)]
 struct Image {
     /// Its name.
     name: String,
@@ -262,6 +251,7 @@ impl CalibrationAnswer {
             checks: calibration.checked.iter().map(check).collect(),
             rivals: prepared.rivals.iter().map(|rival| self::rival(calibration, rival)).collect(),
             board: board(calibration),
+            taken_as_exact: calibration.taken_as_exact(),
             images: images(calibration),
             rejected: rejected(calibration),
             sets: calibration.compared.iter().flat_map(|compared| &compared.sets).map(Set::new).collect(),
@@ -345,19 +335,6 @@ fn rival(calibration: &Calibration<'_>, rival: &calibench_calibrate::Rival) -> R
         other: CameraAnswer::new(&NamedCamera::new("", rival.other)),
         distance_px: rival.distance_px,
         origin: rival.origin.clone(),
-    }
-}
-
-fn board(calibration: &Calibration<'_>) -> Board {
-    let of = |shape, why: Option<&String>| Board { shape, why: why.cloned(), bend: None, sigma: None, p: None };
-    match &calibration.prepared.shape {
-        Shape::Untouched => of("untouched", None),
-        Shape::Untested(why) => of("untested", Some(why)),
-        Shape::Flat { bend, .. } => Board { bend: Some(bend.coefficients), sigma: Some(bend.sigmas), p: Some(bend.p), ..of("flat", None) },
-        Shape::Bent { bend, .. } => {
-            let (values, sigmas) = board_bend(calibration).unzip();
-            Board { bend: values, sigma: sigmas, p: bend.map(|bend| bend.p), ..of("bent", None) }
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// Why a calibration is in doubt, for programs.
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Doubted {
-    /// What is in doubt: `precision` (of image points), `gross-errors`, `control` (its coordinates), `distances` (that were measured), `lens` (more than the model pictures), `shutter` (rows of an
+    /// What is in doubt: `precision` (of image points), `gross-errors`, `control` (its coordinates), `distances` (that were measured), `board` (whose corners were measured), `lens` (more than the model pictures), `shutter` (rows of an
     /// image exposed one after the other), `frame` (points outside of it), `residuals` (such as no operator leaves), `fold` (inside the frame), `implausible` (a
     /// camera that no lens makes), `crop` (images that are a part), `over-frame` (hardly known there), `together` (errors of an image) or `rival` (another camera fits).
     subject: &'static str,

@@ -2,7 +2,7 @@
 
 #![expect(clippy::struct_field_names, reason = "they are the keys of the document, each with its unit")]
 
-use calibench_records::judgement::{Beside, Cell, Estimate, InUse, Standing, StillHolds, Summary, Trusted};
+use calibench_records::judgement::{Beside, BoardShare, Cell, Estimate, InUse, Standing, StillHolds, Summary, Trusted};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -30,6 +30,8 @@ pub struct JudgementAnswer {
     sigma_corner_px: Option<f64>,
     /// By which sigmas must be multiplied, a number: 1 where nothing is to be said against them.
     inflation: f64,
+    /// What of the error of predictions is the board's; null where its corners were not freed.
+    board: Option<Board>,
     /// What halves of the photographs say of the sigmas.
     halves: Option<Halves>,
     /// The model with which operators are compared.
@@ -67,6 +69,67 @@ struct Figure {
 impl From<Estimate> for Figure {
     fn from(Estimate { value, interval: (low, high) }: Estimate) -> Self {
         Self { value_px: value, low_px: low, high_px: high }
+    }
+}
+
+/// The board beside operators and models: what each adds to the error of predictions is the root of a difference of squares.
+#[derive(Serialize, JsonSchema)]
+struct Board {
+    /// RMS of points not seen with the corners of the board freed in the photographs that take part.
+    freed: Figure,
+    /// The chance of as much of an improvement if free corners predict no better.
+    p: f64,
+    /// What the board as it is said to be adds, px.
+    board_px: f64,
+    /// What separates the middle one of the other operators from the best, px; null of one alone.
+    operators_px: Option<f64>,
+    /// The same of the models.
+    models_px: Option<f64>,
+    /// Whether the board decides: measure it.
+    decides: bool,
+    /// How far its corners are off in its plane (RMS, 2D), object units, what their standard deviations explain taken out; null where that cannot be told.
+    moved_in_plane: Option<f64>,
+    /// The standard deviation of that.
+    sigma_in_plane: Option<f64>,
+    /// How far they are off along its normal.
+    moved_across: Option<f64>,
+    /// The standard deviation of that.
+    sigma_across: Option<f64>,
+    /// Of a board whose corners are those of a file; null of others.
+    file: Option<BoardFile>,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct BoardFile {
+    /// RMS of points not seen with nominal corners.
+    nominal: Figure,
+    /// The chance of as much of a loss with nominal corners if they predict no worse.
+    p: f64,
+    /// Whether the file decides: take it.
+    decides: bool,
+    /// Whether nominal corners predict better: the file is of another board, or of this one before it changed.
+    misfits: bool,
+}
+
+fn board(share: &BoardShare, own: f64) -> Board {
+    let moved = share.moved;
+    Board {
+        freed: share.freed.holdout.into(),
+        p: share.freed.p_better,
+        board_px: share.board_px,
+        operators_px: share.operators_px,
+        models_px: share.models_px,
+        decides: share.decides(),
+        moved_in_plane: moved.map(|moved| moved.in_plane),
+        sigma_in_plane: moved.map(|moved| moved.sigma_in_plane),
+        moved_across: moved.map(|moved| moved.across),
+        sigma_across: moved.map(|moved| moved.sigma_across),
+        file: share.nominal.map(|nominal| BoardFile {
+            nominal: nominal.holdout.into(),
+            p: nominal.p_worse,
+            decides: share.file_decides(own),
+            misfits: share.file_misfits(),
+        }),
     }
 }
 
@@ -184,6 +247,7 @@ impl JudgementAnswer {
             sigma_centre_px: cell.uncertainty.map(|(centre, _)| centre),
             sigma_corner_px: cell.uncertainty.map(|(_, corner)| corner),
             inflation: trusted.inflation(),
+            board: trusted.board().map(|share| board(&share, cell.holdout.map_or(f64::NAN, |holdout| holdout.value))),
             halves: cell.split.map(|split| Halves { splits: split.count, ratio: split.ratio(), ratio_of_modes: split.modes, p: split.p }),
             compared_with: trusted.least.model.to_string(),
             operators: operators(trusted),

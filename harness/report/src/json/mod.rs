@@ -1,6 +1,7 @@
 //! What commands answer to programs: one JSON document each, with a schema that says what every key is.
 
 mod acceptance;
+mod board;
 mod calibration;
 mod camera;
 mod compared;
@@ -10,6 +11,7 @@ mod doubted;
 mod judgement;
 mod lengths;
 mod listing;
+mod measured_board;
 mod measurement;
 mod next;
 mod rig;

@@ -1,5 +1,6 @@
 //! What photographs say about operators and camera models: one page, made from the records of a judgement.
 
+mod board;
 mod figures;
 mod html;
 mod tables;

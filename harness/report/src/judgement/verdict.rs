@@ -5,6 +5,7 @@ use calibench_records::judgement::{
     ALPHA, Beside, Cell, Estimate, HONEST, InUse, MARGIN_PX, Measured, OUTLIER_ALPHA, Published, Standing, StillHolds, Summary, Trusted,
 };
 
+use super::board;
 use crate::markdown::fixed;
 use crate::plain;
 
@@ -14,12 +15,14 @@ const ALL_BUT: f64 = 0.98;
 /// Which operator and which model, and how far.
 pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     let (cell, least) = (trusted.cell, trusted.least);
-    let mut lines = vec![format!(
+    let share = trusted.board();
+    let mut lines: Vec<String> = share.iter().filter_map(|share| board::first(share, cell)).collect();
+    lines.push(format!(
         "**Of these images trust `{}` with the model `{}`.** It predicts corners of photographs that took no part in the calibration to {}.",
         cell.method,
         cell.model,
         cell.holdout.map_or_else(String::new, |holdout| interval(&holdout))
-    )];
+    ));
     lines.extend(trusted.doubt().map(|why| format!("**In doubt**: {why}. Its limits do not hold.")));
     lines.push(format!(
         "**Operators**, with `{}`: {}{}{}",
@@ -30,6 +33,7 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     ));
     lines.extend(compared_on(summary));
     lines.push(models(trusted));
+    lines.extend(share.and_then(|share| board::share(&share, cell)));
     lines.extend(how_far(trusted));
     lines.extend(beyond(summary, trusted));
     lines.push(outlying(cell));
@@ -62,7 +66,7 @@ pub fn in_use(found: &InUse) -> String {
 }
 
 /// A figure with its interval.
-fn interval(estimate: &Estimate) -> String {
+pub(super) fn interval(estimate: &Estimate) -> String {
     let (low, high) = estimate.interval;
     format!("{} px RMS (95 % over views {} to {})", plain(estimate.value), plain(low), plain(high))
 }
@@ -83,7 +87,7 @@ fn compared_on(summary: &Summary) -> Option<String> {
     ))
 }
 
-fn chance(p: f64) -> String {
+pub(super) fn chance(p: f64) -> String {
     if p < 0.001 { "p < 0.001".into() } else { format!("p = {p:.3}") }
 }
 

@@ -1,5 +1,6 @@
 //! From rows to figures and a verdict: a pure function of the records.
 
+mod board;
 mod in_use;
 mod limit;
 mod models;
@@ -14,6 +15,7 @@ use calibench_random::{Key, Purpose, stream};
 use rand::RngExt;
 
 use super::{Row, measure, outliers};
+pub use board::{BoardShare, FreedCorners, OtherCorners};
 pub use in_use::{InUse, StillHolds};
 pub use limit::Predicted;
 pub use models::{MARGIN_PX, Standing};
@@ -129,6 +131,12 @@ pub struct Cell {
     pub published: Option<Published>,
     /// By view: RMS residual with the published camera, px.
     pub published_views: BTreeMap<Arc<str>, f64>,
+    /// Predictions with corners of the board that are freed in the other views; `None` where they were not.
+    pub freed: Option<OtherCorners>,
+    /// Predictions with nominal corners in the place of measured ones; `None` where none were measured.
+    pub nominal: Option<OtherCorners>,
+    /// How far freed corners are from their places.
+    pub moved: Option<FreedCorners>,
 }
 
 /// An operator and how many corners it measured.
@@ -259,6 +267,9 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
         trouble: rows.iter().find(|row| row.status.as_ref() == "failed").map(|row| row.reason.clone()),
         views: views(of(measure::RESIDUALS), parameters),
         holdout: pooled(&held_out, seed),
+        freed: board::other_corners(&held_out, &by_view(measure::BOARD_FREED), |views| pooled(views, seed)),
+        nominal: board::other_corners(&held_out, &by_view(measure::BOARD_NOMINAL), |views| pooled(views, seed)),
+        moved: moved(rows),
         held_out,
         across: pooled(&carried, seed),
         carried,
@@ -279,6 +290,16 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
         }),
         published_views: by_view(measure::PUBLISHED_VIEW).into_iter().map(|(view, (rms, _))| (view, rms)).collect(),
     }
+}
+
+fn moved(rows: &[&Row]) -> Option<FreedCorners> {
+    let of = |place: &str| {
+        let row = rows.iter().find(|row| &*row.measure == measure::BOARD_MOVED && &*row.place == place)?;
+        let (moved, sigma) = (row.value?, row.sigma?);
+        Some(((moved * moved - sigma * sigma).max(0.0).sqrt(), sigma))
+    };
+    let ((in_plane, sigma_in_plane), (across, sigma_across)) = (of("in the plane")?, of("across")?);
+    Some(FreedCorners { in_plane, across, sigma_in_plane, sigma_across })
 }
 
 fn beside(rows: &[&Row], frame: &Row) -> Option<Beside> {

@@ -93,6 +93,9 @@ impl Trusted<'_> {
         if self.cell.split.is_some_and(|split| split.p < HONEST) {
             return Some("halves of the photographs differ by more than its standard deviations say".into());
         }
+        if self.board().is_some_and(|share| share.file_misfits()) {
+            return Some("the board file does not fit: unseen corners are predicted better with nominal ones".into());
+        }
         if self.limit.is_none() {
             return Some("its camera has no rays for parts of the frame".into());
         }

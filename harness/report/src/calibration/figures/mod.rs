@@ -1,6 +1,7 @@
 //! What the figures of a calibration show, each once: for its pictures and for its page.
 
 mod board;
+mod corners_of_board;
 mod correlations;
 mod maps;
 mod residuals;
@@ -57,7 +58,7 @@ impl Figures {
 
 /// What the figures of a calibration show; `maps` are the uncertainty's of each camera, `corners` all image points.
 pub(super) fn figures(calibration: &Calibration<'_>, maps: &[Vec<UncertaintyMap>], corners: &[Corner<'_>]) -> Figures {
-    let mut first: Vec<Figure> = board::figure(calibration).into_iter().collect();
+    let mut first: Vec<Figure> = board::figure(calibration).into_iter().chain(corners_of_board::figure(calibration)).collect();
     let cameras: Vec<OfCamera<'_, '_>> = (0..maps.len()).map(|camera| OfCamera::new(calibration, camera)).collect();
     for (of, maps) in cameras.iter().zip(maps) {
         first.push(residuals::together(of, corners));
