@@ -5,7 +5,7 @@ use clap::Command;
 /// What a person wants, and the commands for it. Every command is in one group.
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Look at photographs", &["judge", "calibrate", "detect", "measure", "point", "undistort", "print"]),
-    ("Work with cameras and points", &["camera", "convert", "diff", "stmap", "control", "resect", "intersect", "orient", "accept"]),
+    ("Work with cameras and points", &["camera", "convert", "diff", "stmap", "control", "resect", "intersect", "orient", "accept", "task"]),
     ("Compare methods", &["run", "report", "plot", "records", "show", "render", "merge", "league", "speed"]),
     ("Keep accuracy from regressing", &["check", "bless", "init", "gate-power", "plugin"]),
     ("Learn more", &["demo", "list", "schema", "completions", "man", "help"]),

@@ -35,13 +35,18 @@ pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
 
 /// The first camera of a file.
 pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    Ok(first(path, &ReadOptions { size, ..ReadOptions::default() })?.camera)
+    Ok(named_camera(path, size)?.camera)
 }
 
 /// The first camera of a file for images of `size`, of another size where `is_same` says that it is the same camera.
 pub fn camera_for(path: &Path, size: ImageSize, is_same: bool) -> Result<Camera, Failure> {
     let named = first(path, &ReadOptions { size: Some(size), other_size: true, ..ReadOptions::default() })?;
     Ok(for_images(path, &named, size, is_same)?.camera)
+}
+
+/// The first camera of a file with what the file knows of it.
+pub fn named_camera(path: &Path, size: Option<ImageSize>) -> Result<NamedCamera, Failure> {
+    first(path, &ReadOptions { size, ..ReadOptions::default() })
 }
 
 fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {

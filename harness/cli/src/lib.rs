@@ -60,6 +60,7 @@ mod show;
 mod speed;
 mod stmap;
 mod stored;
+mod task;
 mod undistort;
 
 use std::ffi::OsString;
@@ -148,6 +149,8 @@ enum Command {
     Orient(orient::Orient),
     /// Say whether measuring keeps what is specified, by lengths or check points
     Accept(Box<accept::Accept>),
+    /// Say how well something will be measured, at 95 %, and what makes that up
+    Task(Box<task::Task>),
     /// Compare whole calibration systems on rendered photographs, class by class
     League(league::League),
     /// Convert a camera file to the format of another tool
@@ -252,6 +255,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Intersect(intersect) => intersect.run(&context),
         Command::Orient(orient) => orient.run(&context),
         Command::Accept(accept) => accept.run(),
+        Command::Task(task) => task.run(),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

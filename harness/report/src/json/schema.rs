@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer,
+    MeasurementAnswer, RigAnswer, TaskAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 9] = [
+pub const COMMANDS: [&str; 10] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
@@ -20,6 +20,7 @@ pub const COMMANDS: [&str; 9] = [
     ListAnswer::COMMAND,
     Measured::COMMAND,
     AcceptanceAnswer::COMMAND,
+    TaskAnswer::COMMAND,
 ];
 
 /// What `measure` answers: the schema is the same for any rows.
@@ -37,6 +38,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         ListAnswer::COMMAND => of::<ListAnswer>(),
         Measured::COMMAND => of::<Measured>(),
         AcceptanceAnswer::COMMAND => of::<AcceptanceAnswer>(),
+        TaskAnswer::COMMAND => of::<TaskAnswer>(),
         _ => return None,
     })
 }
