@@ -22,10 +22,18 @@ fn an_answer_is_in_millimetres_and_says_what_it_takes_as_exact() {
     let words = stdout(&bare);
     assert_eq!(bare.status.code(), Some(3), "{words}{}", stderr(&bare));
     assert!(stderr(&bare).contains("in doubt: the camera's file says nothing of its uncertainty"), "{}", stderr(&bare));
-    assert!(words.starts_with("length 100 mm: within \u{b1} 0.111 mm in 95 of 100 measurements (standard uncertainty 0.0566 mm)\n"), "{words}");
-    for exact in
-        ["the camera (its file has no covariance)", "projection centres", "rotations of images", "the position of the plane", "the scale", "the object's temperature"]
-    {
+    assert!(
+        words.starts_with("length 100 mm: within \u{b1} 0.111 mm in 95 of 100 measurements (standard uncertainty 0.0566 mm)\n"),
+        "{words}"
+    );
+    for exact in [
+        "the camera (its file has no covariance)",
+        "projection centres",
+        "rotations of images",
+        "the position of the plane",
+        "the scale",
+        "the object's temperature",
+    ] {
         assert!(words.contains(&format!("taken as exact: {exact}")), "{exact}: {words}");
     }
     let known = run(here, &["task", "task.toml", "--camera", "known.yaml", "--json", "--map", "map.png", "--halves", "1.25"]);
@@ -54,7 +62,20 @@ fn a_calibrations_folder_has_the_camera_and_what_is_in_doubt() {
     for name in ["points.csv", "scale.csv"] {
         std::fs::copy(root().join("examples/acceptance").join(name), here.join(name)).unwrap();
     }
-    let calibrate = ["calibrate", "-q", "--points", "points.csv", "--distances", "scale.csv", "--size", "4032x3024", "--sigma", "0.1", "--report", "report"];
+    let calibrate = [
+        "calibrate",
+        "-q",
+        "--points",
+        "points.csv",
+        "--distances",
+        "scale.csv",
+        "--size",
+        "4032x3024",
+        "--sigma",
+        "0.1",
+        "--report",
+        "report",
+    ];
     let calibrated = run(here, &calibrate);
     assert!(calibrated.status.success(), "{}", stderr(&calibrated));
     let pair = "[[image]]\ncentre = [-600, 0, 3000]\ntarget = [0, 0, 0]\nsigma_centre = 0.05\nsigma_angles = 0.002\n[[image]]\ncentre = [600, 0, 3000]\ntarget = [0, 0, 0]\nsigma_centre = 0.05\nsigma_angles = 0.002\n";
@@ -84,10 +105,18 @@ fn a_calibrations_folder_has_the_camera_and_what_is_in_doubt() {
     assert!(several.status.code() == Some(2) && stderr(&several).contains("has several cameras"), "{}", stderr(&several));
     let name = cameras.cameras[0].named.name.clone();
     let doubted = run(here, &["task", "task.toml", "--calibration", "report", "--camera-name", &name]);
-    assert!(doubted.status.code() == Some(3) && stderr(&doubted).contains("in doubt: the calibration: the board is no board"), "{}", stderr(&doubted));
+    assert!(
+        doubted.status.code() == Some(3) && stderr(&doubted).contains("in doubt: the calibration: the board is no board"),
+        "{}",
+        stderr(&doubted)
+    );
     std::fs::write(&file, "{}").unwrap();
     let none = run(here, &["task", "task.toml", "--calibration", "report"]);
-    assert!(none.status.code() == Some(2) && stderr(&none).contains("cameras.json: is no file that `calibench calibrate --report` wrote"), "{}", stderr(&none));
+    assert!(
+        none.status.code() == Some(2) && stderr(&none).contains("cameras.json: is no file that `calibench calibrate --report` wrote"),
+        "{}",
+        stderr(&none)
+    );
 }
 
 #[test]
@@ -108,5 +137,10 @@ fn what_is_no_task_is_refused_and_what_is_bent_is_doubted() {
     let far = "sigma = 30.0\n[measure]\nlength = [[0, 0, 0], [0, 0, 300]]\n[[image]]\ncentre = [-30, 0, 1000]\nangles = [0, 0, 0]\n[[image]]\ncentre = [30, 0, 1000]\nangles = [0, 0, 0]\n";
     write(here, "task.toml", far);
     let doubted = run(here, &["task", "task.toml", "--camera", "camera.yaml"]);
-    assert!(doubted.status.code() == Some(3) && stderr(&doubted).contains("in doubt: the errors are so large"), "{}{}", stdout(&doubted), stderr(&doubted));
+    assert!(
+        doubted.status.code() == Some(3) && stderr(&doubted).contains("in doubt: the errors are so large"),
+        "{}{}",
+        stdout(&doubted),
+        stderr(&doubted)
+    );
 }

@@ -88,7 +88,14 @@ fn study(set: &Set) -> Outcome {
 }
 
 /// The distances of the four outer corners in two photographs.
-fn measured(set: &Set, known: &KnownCamera<'_>, sigma_px: f64, control: &[ControlRow], pair: [&HashMap<String, PixelPoint>; 2], outcome: &mut Outcome) {
+fn measured(
+    set: &Set,
+    known: &KnownCamera<'_>,
+    sigma_px: f64,
+    control: &[ControlRow],
+    pair: [&HashMap<String, PixelPoint>; 2],
+    outcome: &mut Outcome,
+) {
     let [columns, rows] = set.corners;
     let corner = |row: usize, column: usize| format!("r{row}c{column}");
     let inner: Vec<String> = (2..rows).flat_map(|row| (2..columns).map(move |column| corner(row, column))).collect();
@@ -141,13 +148,19 @@ fn measured(set: &Set, known: &KnownCamera<'_>, sigma_px: f64, control: &[Contro
 fn told(set: &Set) -> Outcome {
     let outcome = study(set);
     let rms = (outcome.squares / outcome.all as f64).sqrt();
-    println!("{}: {} of {} intervals hold, {} left out, errors {rms:.2} of their standard uncertainties", set.folder, outcome.held, outcome.all, outcome.left_out);
+    println!(
+        "{}: {} of {} intervals hold, {} left out, errors {rms:.2} of their standard uncertainties",
+        set.folder, outcome.held, outcome.all, outcome.left_out
+    );
     outcome
 }
 
 /// OpenCV's board: corners err by 0.05 to 0.09 mm in squares of 25 mm, as both of its cameras see them alike, and calibrations find it bent by 0.06 to 0.18 mm.
 #[test]
-#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for")]
+#[cfg_attr(
+    not(photographs),
+    ignore = "the photographs left01.jpg to left14.jpg are absent: docs/scenarios.md says where they are looked for"
+)]
 fn distances_on_opencvs_board_are_in_their_intervals() {
     let outcome = told(&Set { folder: "opencv-left", corners: [9, 6], print_sigma: 0.07 / 25.0, flatness_sigma: 0.15 / 25.0 });
     assert!(outcome.all >= 60 && outcome.held as f64 >= 0.88 * outcome.all as f64, "{} of {}", outcome.held, outcome.all);

@@ -87,12 +87,17 @@ impl Frame {
         if let Some(plane) = &task.plane
             && plane.normal.amax() < 1.0 - 1e-9
         {
-            return Self { names: ["along the plane", "across it"], axes: plane.axes(), normal: plane.normal, middle: plane.point, at: None };
+            return Self {
+                names: ["along the plane", "across it"],
+                axes: plane.axes(),
+                normal: plane.normal,
+                middle: plane.point,
+                at: None,
+            };
         }
-        let sight: Vector3<f64> = task.plane.map_or_else(
-            || task.images.iter().map(|station| station.pose.rotation.row(2).transpose()).sum(),
-            |plane| plane.normal,
-        );
+        let sight: Vector3<f64> = task
+            .plane
+            .map_or_else(|| task.images.iter().map(|station| station.pose.rotation.row(2).transpose()).sum(), |plane| plane.normal);
         let axis = sight.iamax();
         let [first, second] = [[1, 2], [0, 2], [0, 1]][axis];
         let unit = |axis: usize| Vector3::from_fn(|row, _| f64::from(u8::from(row == axis)));

@@ -79,7 +79,9 @@ impl Quantity {
         let of = |name, value, in_degrees| Named { name, value, in_degrees };
         match self {
             Self::Length([from, to]) => vec![of("length", Some((to - from).norm()), false)],
-            Self::Point(point) => ["X", "Y", "Z"].into_iter().zip(point.iter()).map(|(name, value)| of(name, Some(*value), false)).collect(),
+            Self::Point(point) => {
+                ["X", "Y", "Z"].into_iter().zip(point.iter()).map(|(name, value)| of(name, Some(*value), false)).collect()
+            }
             Self::Angle(points) => vec![of("angle", Some(angle(points).to_degrees()), true)],
             Self::Plane(points) => {
                 let shape = Shape::of(points.iter().copied());
@@ -140,7 +142,9 @@ impl Quantity {
                 let (u, v) = (a.normalize(), b.normalize());
                 let (cosine, sine) = (u.dot(&v), u.cross(&v).norm());
                 if sine.is_nan() || sine < STRAIGHT {
-                    return Err(TaskError::Quantity("an angle of 0 or 180 degrees has no derivative; expected three points that are not on a line"));
+                    return Err(TaskError::Quantity(
+                        "an angle of 0 or 180 degrees has no derivative; expected three points that are not on a line",
+                    ));
                 }
                 let (by_a, by_b) = ((u * cosine - v) / (a.norm() * sine), (v * cosine - u) / (b.norm() * sine));
                 for (place, by) in [by_a, -(by_a + by_b), by_b].into_iter().enumerate() {
@@ -149,12 +153,13 @@ impl Quantity {
             }
             Self::Plane(points) => {
                 let PlaneFrame { shape, squares } = PlaneFrame::of(points)?;
-                let normal: Vector3<f64> = shape.axes.column(2).into();
+                let [long, short, normal] = [0, 1, 2].map(|axis| Vector3::from(shape.axes.column(axis)));
                 for (place, point) in points.iter().enumerate() {
-                    let [u, v] = shape.in_plane(point);
+                    let ([u, v], height) = (shape.in_plane(point), shape.height(point));
                     put(&mut rows, 0, place, &(normal / points.len() as f64));
-                    put(&mut rows, 1, place, &(normal * (v / squares[1]).to_degrees()));
-                    put(&mut rows, 2, place, &(normal * (-u / squares[0]).to_degrees()));
+                    // A point that is off the plane tips it when it moves along it, too.
+                    put(&mut rows, 1, place, &((normal * v + short * height) / squares[1]).map(f64::to_degrees));
+                    put(&mut rows, 2, place, &(-(normal * u + long * height) / squares[0]).map(f64::to_degrees));
                 }
             }
             Self::Rotation(points) => {

@@ -89,7 +89,9 @@ pub fn parse(file: &str, text: &str) -> Result<Task, Problems> {
     let images: Vec<Station> = wire.image.iter().map(|image| check.station(image)).collect();
     match (images.len(), &wire.known_plane) {
         (0, _) => check.wrong(0..0, "has no [[image]]; expected two or more, or one with [known_plane]"),
-        (1, None) => check.wrong(0..0, "has one [[image]] and no [known_plane]; expected a second image, or the plane that all of it lies in"),
+        (1, None) => {
+            check.wrong(0..0, "has one [[image]] and no [known_plane]; expected a second image, or the plane that all of it lies in")
+        }
         (2.., Some(plane)) => check.wrong(plane.span(), "several images need no [known_plane]; leave it out, or the other images"),
         _ => {}
     }
@@ -186,7 +188,9 @@ impl Check {
             Measure { length: Some(ends), point: None, angle: None, plane: None, rotation: None } => {
                 self.exactly(ends, "expected two points that are not one").map(Quantity::Length)
             }
-            Measure { length: None, point: Some(point), angle: None, plane: None, rotation: None } => Some(Quantity::Point(self.point(point))),
+            Measure { length: None, point: Some(point), angle: None, plane: None, rotation: None } => {
+                Some(Quantity::Point(self.point(point)))
+            }
             Measure { length: None, point: None, angle: Some(points), plane: None, rotation: None } => {
                 self.exactly(points, "expected three points, the second at the apex, none of which is its neighbour").map(Quantity::Angle)
             }
@@ -245,12 +249,18 @@ impl Check {
                 let roll = image.roll.as_ref().map_or(0.0, |roll| self.number(roll).to_radians());
                 let at = self.point(target);
                 Pose::looking_at(centre, at, up, roll).unwrap_or_else(|| {
-                    self.wrong(target.span(), "is not to be looked at: it is the centre, or lies along `up` from it [default of up: 0, 1, 0]");
+                    self.wrong(
+                        target.span(),
+                        "is not to be looked at: it is the centre, or lies along `up` from it [default of up: 0, 1, 0]",
+                    );
                     fallen
                 })
             }
             _ => {
-                self.wrong(image.centre.span(), "expected `angles` (omega, phi, kappa, degrees) or `target` (what the camera looks at) beside it");
+                self.wrong(
+                    image.centre.span(),
+                    "expected `angles` (omega, phi, kappa, degrees) or `target` (what the camera looks at) beside it",
+                );
                 fallen
             }
         }

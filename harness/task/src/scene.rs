@@ -185,7 +185,8 @@ fn control_points(task: &Task, rows: &[ControlRow]) -> Result<Vec<ControlPoint>,
             (place[axis] - f64::midpoint(low, high)) / (0.5 * (high - low)).max(f64::MIN_POSITIVE)
         });
         // The shapes of `calibrate`'s bend.
-        let bends = [1.0 - u * u, 1.0 - v * v, u * v].map(|lift| if errors.flatness_sigma > 0.0 { normal * (lift * errors.flatness_sigma) } else { Vector3::zeros() });
+        let bends = [1.0 - u * u, 1.0 - v * v, u * v]
+            .map(|lift| if errors.flatness_sigma > 0.0 { normal * (lift * errors.flatness_sigma) } else { Vector3::zeros() });
         ControlPoint { object, sigmas: Vector3::from(row.sigmas.unwrap_or([errors.print_sigma; 3])), bends }
     };
     Ok(rows.iter().map(one).collect())

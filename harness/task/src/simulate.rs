@@ -15,7 +15,8 @@ impl Scene<'_> {
         let poses = (0..self.task.images.len()).map(|image| self.pose_with(&camera, image, z)).collect::<Result<Vec<_>, _>>()?;
         let scale: f64 = 1.0 + self.scales().map(|(number, sigma)| sigma * z[number]).sum::<f64>();
         let count = self.task.quantity.points().len();
-        let points = (0..count).map(|point| Ok(self.point_with(&camera, &poses, point, z)? * scale)).collect::<Result<Vec<_>, TaskError>>()?;
+        let points =
+            (0..count).map(|point| Ok(self.point_with(&camera, &poses, point, z)? * scale)).collect::<Result<Vec<_>, TaskError>>()?;
         self.task.quantity.errors(&points)
     }
 

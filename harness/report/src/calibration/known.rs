@@ -55,9 +55,10 @@ impl CalibratedCameras {
     pub fn choose(&self, name: Option<&str>) -> Result<&CalibratedCamera, String> {
         let names = || few(&self.cameras.iter().map(|camera| escape::name(&camera.named.name).into_owned()).collect::<Vec<_>>());
         match (name, &self.cameras[..]) {
-            (Some(name), cameras) => cameras.iter().find(|camera| camera.named.name == name).ok_or_else(|| {
-                format!("no camera is called {}; expected one of {}", escape::name(name), names())
-            }),
+            (Some(name), cameras) => cameras
+                .iter()
+                .find(|camera| camera.named.name == name)
+                .ok_or_else(|| format!("no camera is called {}; expected one of {}", escape::name(name), names())),
             (None, [only]) => Ok(only),
             (None, []) => Err("holds no camera".to_owned()),
             (None, _) => Err(format!("has several cameras; choose one of {} with --camera-name", names())),

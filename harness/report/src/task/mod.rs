@@ -9,7 +9,8 @@ use crate::markdown::{MarkdownTable, plain};
 pub use picture::maps;
 
 /// Beyond this the ends of intervals are said to be elsewhere than the derivatives say.
-const FAILS: &str = "the errors are so large that what is measured does not follow from them in a line, or fails: the interval is not to be relied on";
+const FAILS: &str =
+    "the errors are so large that what is measured does not follow from them in a line, or fails: the interval is not to be relied on";
 
 /// Why a budget is not to be relied on; `camera` is what is in doubt of the calibration itself.
 pub fn doubts(budget: &Budget, has_covariance: bool, camera: &[String]) -> Vec<String> {
@@ -45,7 +46,9 @@ pub fn of_task(task: &Task, budget: &Budget) -> String {
         text.push_str(&format!("taken as exact: {}\n", exact.words()));
     }
     if budget.uncorrelated {
-        text.push_str("note: the camera's file has no correlations of its parameters: taken as independent, which makes most intervals too long\n");
+        text.push_str(
+            "note: the camera's file has no correlations of its parameters: taken as independent, which makes most intervals too long\n",
+        );
     }
     text
 }

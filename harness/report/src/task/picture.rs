@@ -26,8 +26,14 @@ const DARKEST: f64 = 0.9;
 
 /// The colour of a source: that of its place in the order of all, dark grey and light ones after the six of methods.
 fn colour(source: Source) -> RGBColor {
-    const MORE: [RGBColor; 6] =
-        [RGBColor(85, 85, 85), RGBColor(240, 228, 66), RGBColor(136, 34, 85), RGBColor(170, 170, 170), RGBColor(17, 119, 51), RGBColor(51, 34, 136)];
+    const MORE: [RGBColor; 6] = [
+        RGBColor(85, 85, 85),
+        RGBColor(240, 228, 66),
+        RGBColor(136, 34, 85),
+        RGBColor(170, 170, 170),
+        RGBColor(17, 119, 51),
+        RGBColor(51, 34, 136),
+    ];
     let place = Source::ALL.iter().position(|one| *one == source).unwrap_or(0);
     COLOURS.iter().chain(&MORE).nth(place).copied().unwrap_or(BLACK)
 }
@@ -54,7 +60,11 @@ pub fn maps(task: &Task, budget: &Budget, maps: &[Map]) -> Canvas {
     let mut canvas = Canvas::new(LEFT + 2 * width + GAP.0 + RIGHT, (TOP + rows * (height + GAP.1)).max(legends));
     let halves: Vec<f64> = maps.iter().flat_map(|map| &map.cells).flatten().map(|cell| cell.half).collect();
     let unit = budget.components.first().and_then(|component| unit_of(task, component)).unwrap_or("object units");
-    canvas.text(&format!("95 % interval of the {} over the volume: half of it, {unit}, and what makes the most of it", task.quantity.word()), 20, (LEFT, 20));
+    canvas.text(
+        &format!("95 % interval of the {} over the volume: half of it, {unit}, and what makes the most of it", task.quantity.word()),
+        20,
+        (LEFT, 20),
+    );
     let Some(scale) = Scale::of(&halves) else {
         canvas.text("nowhere in this plane can it be measured", 16, (LEFT, TOP));
         return canvas;

@@ -44,7 +44,8 @@ fn depth_costs_what_the_parallax_says() {
     if let Camera::OpenCv(camera) = &mut named.camera {
         camera.distortion[0] = 0.0;
     }
-    let budget = |what: &str| Budget::of(&task(&format!("sigma = 0.1\n[measure]\n{what}\n{images}")), &KnownCamera::of(&named), None).unwrap();
+    let budget =
+        |what: &str| Budget::of(&task(&format!("sigma = 0.1\n[measure]\n{what}\n{images}")), &KnownCamera::of(&named), None).unwrap();
     let end = |depth: f64| depth * depth / (400.0 * 2000.0) * 0.1 * 2.0_f64.sqrt();
     let length = budget("length = [[0, 0, 0], [0, 0, -200]]");
     near(length.components[0].sigma, end(1000.0).hypot(end(1200.0)), 1e-4);
@@ -122,16 +123,23 @@ fn a_map_is_as_even_as_its_geometry() {
 #[test]
 fn what_cannot_be_measured_says_why() {
     let named = camera(&[]);
-    let error = |text: &str, control: Option<&[ControlRow]>| Budget::of(&task(text), &KnownCamera::of(&named), control).unwrap_err().to_string();
+    let error =
+        |text: &str, control: Option<&[ControlRow]>| Budget::of(&task(text), &KnownCamera::of(&named), control).unwrap_err().to_string();
     let missed = "point 2 of what is measured lies in the frame of 0 images; expected 1";
     assert_eq!(error(&DOWN.replace("[50, 0, 0]]", "[900, 0, 0]]"), None), missed);
-    assert!(error(&DOWN.replace("[50, 0, 0]]", "[50, 0, 5]]"), None).starts_with("point 2 of what is measured lies 5.000e0 off the known plane"));
+    assert!(
+        error(&DOWN.replace("[50, 0, 0]]", "[50, 0, 5]]"), None)
+            .starts_with("point 2 of what is measured lies 5.000e0 off the known plane")
+    );
     assert!(error(DOWN, Some(&board()[..3])).starts_with("image 1 shows 3 control points"));
     // On a line.
     assert!(error(DOWN, Some(&board()[..9])).starts_with("image 1 shows 9 control points"));
     let mut deep = board();
     deep[0].position[2] = 40.0;
-    assert_eq!(Budget::of(&task(&format!("{DOWN}[control]\nflatness_sigma = 1\n")), &KnownCamera::of(&named), Some(&deep)).unwrap_err(), TaskError::NoBoard);
+    assert_eq!(
+        Budget::of(&task(&format!("{DOWN}[control]\nflatness_sigma = 1\n")), &KnownCamera::of(&named), Some(&deep)).unwrap_err(),
+        TaskError::NoBoard
+    );
     let known = NamedCamera { covariance: Some(ParameterCovariance::new(vec!["c".into()], vec![1.0]).unwrap()), ..named.clone() };
     assert_eq!(Budget::of(&task(DOWN), &KnownCamera::of(&known), None).unwrap_err(), TaskError::Parameter("c".into()));
     let straight = DOWN.replace("length = [[-50, 0, 0], [50, 0, 0]]", "angle = [[-50, 0, 0], [0, 0, 0], [50, 0, 0]]");

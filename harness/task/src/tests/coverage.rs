@@ -65,7 +65,8 @@ struct Board {
 
 impl Board {
     fn draw(draw: &mut Draw) -> Self {
-        let nominal: Vec<Point3<f64>> = (0..63).map(|k| Point3::new(30.0 * (k % 9) as f64 - 120.0, 30.0 * (k / 9) as f64 - 90.0, 0.0)).collect();
+        let nominal: Vec<Point3<f64>> =
+            (0..63).map(|k| Point3::new(30.0 * (k % 9) as f64 - 120.0, 30.0 * (k / 9) as f64 - 90.0, 0.0)).collect();
         let (scale, bend) = (1.0 + SCALE * draw.normal(), BEND * draw.vector());
         let real = nominal.iter().map(|point| {
             let (u, v) = (point.x / 120.0, point.y / 90.0);
@@ -81,8 +82,15 @@ impl Board {
 }
 
 fn truth() -> Camera {
-    let mut camera =
-        OpenCv { size: ImageSize { width: 1600, height: 1200 }, fx: 1500.0, fy: 1502.0, cx: 805.0, cy: 596.0, distortion: [0.0; 14], coefficients: 5 };
+    let mut camera = OpenCv {
+        size: ImageSize { width: 1600, height: 1200 },
+        fx: 1500.0,
+        fy: 1502.0,
+        cx: 805.0,
+        cy: 596.0,
+        distortion: [0.0; 14],
+        coefficients: 5,
+    };
     camera.distortion[..4].copy_from_slice(&[-0.12, 0.08, 4e-4, -3e-4]);
     camera.into()
 }
@@ -154,8 +162,9 @@ fn measured(draw: &mut Draw, kind: usize, camera: &Camera, found: &NamedCamera, 
             .map(|pose| {
                 if kind == 1 {
                     let seen = board.nominal.iter().zip(&board.real);
-                    let control: Vec<Control> =
-                        seen.filter_map(|(nominal, real)| Some(Control { object: *nominal, image: draw.seen(camera, pose, real)? })).collect();
+                    let control: Vec<Control> = seen
+                        .filter_map(|(nominal, real)| Some(Control { object: *nominal, image: draw.seen(camera, pose, real)? }))
+                        .collect();
                     fit_pose(&found.camera, pose, &control).unwrap().pose
                 } else {
                     let turn = Rotation3::new(ANGLE * draw.vector());
@@ -167,7 +176,8 @@ fn measured(draw: &mut Draw, kind: usize, camera: &Camera, found: &NamedCamera, 
         let points = [0, 1].map(|end| {
             let at: Vec<PixelPoint> = images.iter().map(|image| image[end].unwrap()).collect();
             if kind < 2 {
-                let sights: Vec<Sight<'_>> = known.iter().zip(&at).map(|(pose, at)| Sight { camera: &found.camera, pose, image: *at }).collect();
+                let sights: Vec<Sight<'_>> =
+                    known.iter().zip(&at).map(|(pose, at)| Sight { camera: &found.camera, pose, image: *at }).collect();
                 return intersect(&sights, 0.0, None).unwrap().point;
             }
             let ray = known[0].world_from_ray(found.camera.unproject(at[0]).unwrap());
@@ -201,7 +211,12 @@ fn hold_95(calibrations: u64) {
     let count = held.len() as f64;
     let mean = held.iter().sum::<f64>() / count;
     let deviation = (held.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (count - 1.0) / count).sqrt();
-    println!("{:.2} % of {} intervals hold the truth, standard deviation {:.2} %; errors are {spread:.3} of their standard uncertainties", 100.0 * mean, held.len() * TASKS, 100.0 * deviation);
+    println!(
+        "{:.2} % of {} intervals hold the truth, standard deviation {:.2} %; errors are {spread:.3} of their standard uncertainties",
+        100.0 * mean,
+        held.len() * TASKS,
+        100.0 * deviation
+    );
     assert!((mean - 0.95).abs() < 0.01_f64.max(3.0 * deviation), "{mean} {deviation}");
     // An interval that is too long holds too much: at most 1.2 times 3.92 standard deviations of the errors.
     assert!(spread > 1.0 / 1.2 && spread < 1.1, "{spread}");

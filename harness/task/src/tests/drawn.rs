@@ -15,7 +15,8 @@ const QUANTITIES: [&str; 5] = [
     "plane = [[-60, -20, 10], [55, 40, -30], [0, -70, 5], [-20, 60, 0]]",
     "rotation = [[-60, -20, 10], [55, 40, -30], [0, -70, 5], [-20, 60, 0]]",
 ];
-const REST: &str = "[control]\nsigma = 0.08\nflatness_sigma = 0.05\n[temperature]\ndifference = 4\nsigma = 2\nexpansion = 2e-5\nexpansion_sigma = 2e-6\n";
+const REST: &str =
+    "[control]\nsigma = 0.08\nflatness_sigma = 0.05\n[temperature]\ndifference = 4\nsigma = 2\nexpansion = 2e-5\nexpansion_sigma = 2e-6\n";
 
 fn known() -> calibench_model::NamedCamera {
     camera(&[("fx", 1.5), ("fy", 1.4), ("cx", 1.0), ("cy", 0.8), ("k1", 0.002)])
@@ -52,7 +53,13 @@ fn derivatives_are_those_of_the_measurement() {
                 let by_difference = (high[row] - low[row]) / (2.0 * STEP);
                 let scale = rows.row(row).norm();
                 let off = (rows[(row, column)] - by_difference).abs() / scale;
-                assert!(off < 2e-6, "{} {row} by {column} of {:?}: {} and {by_difference}", task.quantity.word(), scene.sources(), rows[(row, column)]);
+                assert!(
+                    off < 2e-6,
+                    "{} {row} by {column} of {:?}: {} and {by_difference}",
+                    task.quantity.word(),
+                    scene.sources(),
+                    rows[(row, column)]
+                );
             }
         }
     }
