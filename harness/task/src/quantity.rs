@@ -1,7 +1,7 @@
 //! What follows from measured points, with its derivatives.
 
 use calibench_adjust::approximate::{Shape, similarity};
-use nalgebra::{DMatrix, Matrix3, Point3, Rotation3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Point3, Vector3};
 
 use crate::TaskError;
 
@@ -118,7 +118,7 @@ impl Quantity {
             }
             Self::Rotation(points) => {
                 let turned = similarity(points, found, false).map_err(|_| LINE)?;
-                Rotation3::from_matrix(&turned.rotation).scaled_axis().iter().map(|turn| turn.to_degrees()).collect()
+                turn(&turned.rotation).iter().map(|turn| turn.to_degrees()).collect()
             }
         })
     }
@@ -206,4 +206,12 @@ fn put(rows: &mut DMatrix<f64>, row: usize, point: usize, by: &Vector3<f64>) {
 fn angle([from, apex, to]: &[Point3<f64>; 3]) -> f64 {
     let (a, b) = (from - apex, to - apex);
     a.cross(&b).norm().atan2(a.dot(&b))
+}
+
+/// The axis of a rotation, as long as its angle, rad. By the sine: the cosine of a small angle has half the digits.
+fn turn(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    let m = |row, column| rotation[(row, column)];
+    let axis = 0.5 * Vector3::new(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
+    let sine = axis.norm();
+    if sine > 0.0 { axis * (sine.atan2(0.5 * (rotation.trace() - 1.0)) / sine) } else { axis }
 }

@@ -34,7 +34,7 @@ fn tasks() -> Vec<(Task, bool)> {
 
 #[test]
 fn derivatives_are_those_of_the_measurement() {
-    const STEP: f64 = 1e-3;
+    const STEP: f64 = 1e-2;
     let (named, board) = (known(), board());
     let camera = KnownCamera { halves: Some(1.6), ..KnownCamera::of(&named) };
     for (task, has_control) in tasks() {
