@@ -83,6 +83,7 @@ nightly: build wheel
     {{calibench}} check --strict --locked --nightly --records records
     {{calibench}} check --strict --locked --nightly --against records --records records
     CALIBENCH_NIGHTLY=1 cargo test {{everything}} --test calibench determinism
+    cargo test {{everything}} --lib ten_thousand -- --ignored
     target/python/bin/python -m pytest -q -p no:cacheprovider harness/python/tests/test_size.py
 
 # Compare all numbers with reference/baselines; exit 1 and a table if any is worse, changed without a bless, or not blessed
@@ -231,7 +232,7 @@ schema: build
     set -euo pipefail
     {{calibench}} schema scenarios > scenarios/scenario.schema.json.new
     mv scenarios/scenario.schema.json.new scenarios/scenario.schema.json
-    for command in calibrate calibrate-rig judge judge-rig convert camera diff list measure accept; do
+    for command in calibrate calibrate-rig judge judge-rig convert camera diff list measure accept task; do
         {{calibench}} schema $command > docs/schemas/new
         version=$(python3 -c 'import json; print(json.load(open("docs/schemas/new"))["properties"]["schema"]["const"])')
         mv docs/schemas/new docs/schemas/$command-$version.schema.json

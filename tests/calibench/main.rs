@@ -65,5 +65,7 @@ mod several;
 mod standard;
 mod store;
 mod sweeps;
+mod task;
+mod task_photographs;
 mod vosselman;
 mod zhu;

@@ -142,6 +142,16 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
+        "task",
+        &[
+            (
+                "calibench task task.toml --calibration calibrated --map map.png",
+                "its 95 % interval, from stated poses, and over the volume",
+            ),
+            ("calibench task task.toml --camera camera.toml --board 9x6:25 --json", "from a board in the same images"),
+        ],
+    ),
+    (
         "convert",
         &[
             ("calibench convert camera.xml --to opencv -o camera.yaml", "the format of what is read is found by content"),

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Look at photographs", &["judge", "calibrate", "detect", "measure", "point", "undistort", "print"]),
     (
         "Work with cameras and points",
-        &["camera", "convert", "diff", "stmap", "control", "resect", "intersect", "orient", "accept", "certificate"],
+        &["camera", "convert", "diff", "stmap", "control", "resect", "intersect", "orient", "accept", "task", "certificate"],
     ),
     ("Compare methods", &["run", "report", "plot", "records", "show", "render", "merge", "league", "speed"]),
     ("Keep accuracy from regressing", &["check", "bless", "init", "gate-power", "plugin"]),

@@ -61,6 +61,7 @@ mod show;
 mod speed;
 mod stmap;
 mod stored;
+mod task;
 mod undistort;
 
 use std::ffi::OsString;
@@ -151,6 +152,8 @@ enum Command {
     Accept(Box<accept::Accept>),
     /// Write the certificate of a calibration as PDF, or verify one against its files
     Certificate(Box<certificate::Certificate>),
+    /// Say how well something will be measured, at 95 %, and what makes that up
+    Task(Box<task::Task>),
     /// Compare whole calibration systems on rendered photographs, class by class
     League(league::League),
     /// Convert a camera file to the format of another tool
@@ -256,6 +259,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Orient(orient) => orient.run(&context),
         Command::Accept(accept) => accept.run(),
         Command::Certificate(certificate) => certificate.run(),
+        Command::Task(task) => task.run(),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

@@ -26,6 +26,8 @@ from ._calibench import (
     Targets,
     UnavailableError,
     __version__,
+    accept_lengths,
+    accept_points,
     board,
     calibrate,
     detect,
@@ -41,6 +43,7 @@ from ._calibench import (
     run,
     run_part,
     scenarios,
+    task,
     undistort,
     undistort_points,
 )
@@ -67,6 +70,8 @@ __all__ = [
     "Targets",
     "UnavailableError",
     "__version__",
+    "accept_lengths",
+    "accept_points",
     "board",
     "calibrate",
     "detect",
@@ -83,6 +88,7 @@ __all__ = [
     "run",
     "run_part",
     "scenarios",
+    "task",
     "undistort",
     "undistort_points",
 ]

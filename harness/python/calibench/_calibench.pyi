@@ -28,6 +28,8 @@ __all__ = [
     "Targets",
     "UnavailableError",
     "__version__",
+    "accept_lengths",
+    "accept_points",
     "add_method",
     "board",
     "calibrate",
@@ -46,6 +48,7 @@ __all__ = [
     "run",
     "run_part",
     "scenarios",
+    "task",
     "undistort",
     "undistort_points",
     "shipped",
@@ -468,6 +471,54 @@ def calibrate(
     `True` leaves out all that Baarda's test rejects, `None` what is wrong for itself beyond doubt. `save_board` writes the board's own corners as these images show
     them, `board_file` takes such a file; `board_scale` is (true over nominal length, standard deviation) of the print, `print_noise` the standard deviation of each
     coordinate of a corner, in object units.
+    """
+
+def accept_lengths(
+    lengths: ArrayLike,
+    limit: Sequence[float],
+    lines: Sequence[str],
+    *,
+    probability: float = 0.95,
+    guard_band: Optional[float] = None,
+    diagonal: Optional[float] = None,
+    unit: Optional[str] = None,
+) -> Dict[str, Any]:
+    """Errors of calibrated lengths against the limit A + K L, at most B: what `calibench accept --lengths --json` answers.
+
+    `lengths` is (n, 3): calibrated, its standard uncertainty, measured (NaN: not measured), in one unit; `limit` is (A,), (A, K) or (A, K, B), `lines` the names of
+    their measurement lines. Lengths that gave the scale are to be left out.
+    """
+
+def accept_points(
+    surveyed: ArrayLike,
+    measured: ArrayLike,
+    *,
+    horizontal: Optional[float] = None,
+    vertical: Optional[float] = None,
+    spatial: Optional[float] = None,
+    survey: Optional[Sequence[float]] = None,
+    unit: Optional[str] = None,
+) -> Dict[str, Any]:
+    """Accuracies at check points against classes: what `calibench accept --check-points --json` answers.
+
+    Both are (n, 3), row by row of the same points; NaN in `measured` is a point that was not measured. `survey` is the survey's RMSE, horizontal and vertical.
+    """
+
+def task(
+    task: str,
+    camera: Optional[Camera] = None,
+    *,
+    calibration: Optional[_Path] = None,
+    camera_name: Optional[str] = None,
+    halves: Optional[float] = None,
+    control: Optional[ArrayLike] = None,
+    slices: Optional[Sequence[float]] = None,
+) -> Dict[str, Any]:
+    """How well a camera will measure something, at 95 %, and what makes that up: what `calibench task --json` answers.
+
+    `task` is the text of the TOML file; `camera` has a covariance, as that of a `Calibration`, or `calibration` is the folder that `calibrate --report` wrote.
+    `control` is (n, 3), or (n, 6) with standard deviations: points that every image shows as well, from which the poses come. `halves` is the model error, as on the
+    command line; `slices` asks for maps of planes so far from what is measured. What is in doubt is a `DoubtWarning` as well.
     """
 
 def diff(

@@ -2,6 +2,8 @@
 
 #![allow(clippy::needless_pass_by_value, reason = "Python hands values over")]
 
+mod accepting;
+mod answered;
 mod arrays;
 mod boards;
 mod calibrating;
@@ -28,6 +30,7 @@ mod restored;
 mod running;
 mod session;
 mod stopped;
+mod tasking;
 mod undistorting;
 
 use pyo3::prelude::*;
@@ -37,6 +40,8 @@ mod _calibench {
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python calls it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
+    #[pymodule_export]
+    use super::accepting::{accept_lengths, accept_points};
     #[pymodule_export]
     use super::boards::board;
     #[pymodule_export]
@@ -69,6 +74,8 @@ mod _calibench {
     use super::restored::restored;
     #[pymodule_export]
     use super::running::{Records, merge, run, run_part, shipped};
+    #[pymodule_export]
+    use super::tasking::task;
     #[pymodule_export]
     use super::undistorting::{undistort, undistort_points};
 }

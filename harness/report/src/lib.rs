@@ -49,6 +49,7 @@ mod story;
 mod studies;
 pub mod sweep;
 mod targets;
+pub mod task;
 pub(crate) mod ticks;
 pub mod verdicts;
 mod zhu;

@@ -7,6 +7,7 @@ mod digits;
 mod discs;
 mod figures;
 mod html;
+mod known;
 mod lengths;
 mod limits;
 mod measured_board;
@@ -24,6 +25,7 @@ mod warnings;
 use calibench_calibrate::Calibration;
 
 pub use crate::corners::Pictured;
+pub use known::{CAMERAS_FILE, CalibratedCamera, CalibratedCameras};
 pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;

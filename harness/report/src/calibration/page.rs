@@ -14,7 +14,7 @@ use super::html;
 use super::next::NextSection;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, figures, images_of, lengths, measured_board, sets_page, tables};
+use super::{board, checks, discs, figures, images_of, known, lengths, measured_board, sets_page, tables};
 use crate::canvas::write_pictures;
 use crate::corners::Pictured;
 use crate::html::Figures;
@@ -33,6 +33,7 @@ const MOST: usize = 200;
 pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], doubts: &[String], folder: &NewFolder) -> io::Result<()> {
     let maps: Vec<Vec<UncertaintyMap>> = (0..calibration.cameras()).map(|camera| uncertainty::maps(calibration, camera)).collect();
     tables::write(calibration, &maps, folder)?;
+    known::write(calibration, doubts, folder)?;
     let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{}**\n\n", escape::markdown(&headline)));
     let before: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
     let warnings: String = warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect();
@@ -90,7 +91,8 @@ fn rest(calibration: &Calibration<'_>, (pictures, distortion): (&[(String, Strin
     text.push_str(
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
          targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), of a \
-         board `board.csv` (its bend) and, where it was measured, `board-corners.csv`, of lengths `distances.csv`; `uncertainty.csv` (the maps' numbers, px).\n",
+         board `board.csv` (its bend) and, where it was measured, `board-corners.csv`, of lengths `distances.csv`; `uncertainty.csv` (the maps' numbers, px); `cameras.json` (the cameras with \
+         their covariances, for `calibench task`).\n",
     );
     text
 }

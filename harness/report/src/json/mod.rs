@@ -17,6 +17,7 @@ mod next;
 mod rig;
 mod rig_stands;
 mod schema;
+mod task;
 mod text;
 
 use std::io::{self, Write};
@@ -37,6 +38,7 @@ pub use measurement::{MeasurementAnswer, MeasurementCounts};
 pub use rig::RigAnswer;
 pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
+pub use task::TaskAnswer;
 
 /// What a command answers.
 pub trait Answer: Serialize + JsonSchema {

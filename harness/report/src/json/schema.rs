@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer, RigStandsAnswer,
+    MeasurementAnswer, RigAnswer, RigStandsAnswer, TaskAnswer,
 };
 
 /// Commands that answer with `--json`.
@@ -21,6 +21,7 @@ pub const COMMANDS: [&str; 10] = [
     ListAnswer::COMMAND,
     Measured::COMMAND,
     AcceptanceAnswer::COMMAND,
+    TaskAnswer::COMMAND,
 ];
 
 /// What `measure` answers: the schema is the same for any rows.
@@ -39,6 +40,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         ListAnswer::COMMAND => of::<ListAnswer>(),
         Measured::COMMAND => of::<Measured>(),
         AcceptanceAnswer::COMMAND => of::<AcceptanceAnswer>(),
+        TaskAnswer::COMMAND => of::<TaskAnswer>(),
         _ => return None,
     })
 }
