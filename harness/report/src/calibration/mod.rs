@@ -15,6 +15,8 @@ mod ply;
 mod rig;
 mod scale;
 mod sets_page;
+mod splined;
+mod splined_page;
 mod tables;
 mod uncertainty;
 mod warnings;
@@ -26,6 +28,8 @@ pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;
 pub use rig::rig_summary;
+pub use splined::splined_summary;
+pub use splined_page::write_splined_report;
 pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

@@ -14,6 +14,7 @@ mod measurement;
 mod next;
 mod rig;
 mod schema;
+mod splined;
 mod text;
 
 use std::io::{self, Write};
@@ -33,6 +34,7 @@ pub use listing::{ListAnswer, Listed, ListedParameter};
 pub use measurement::{MeasurementAnswer, MeasurementCounts};
 pub use rig::RigAnswer;
 pub use schema::{COMMANDS, schema_of};
+pub use splined::SplinedAnswer;
 
 /// What a command answers.
 pub trait Answer: Serialize + JsonSchema {

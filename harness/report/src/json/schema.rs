@@ -6,13 +6,14 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer,
+    MeasurementAnswer, RigAnswer, SplinedAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 9] = [
+pub const COMMANDS: [&str; 10] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
+    SplinedAnswer::COMMAND,
     JudgementAnswer::COMMAND,
     ConversionAnswer::COMMAND,
     CameraFileAnswer::COMMAND,
@@ -30,6 +31,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
     Some(match command {
         CalibrationAnswer::COMMAND => of::<CalibrationAnswer>(),
         RigAnswer::COMMAND => of::<RigAnswer>(),
+        SplinedAnswer::COMMAND => of::<SplinedAnswer>(),
         JudgementAnswer::COMMAND => of::<JudgementAnswer>(),
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
         CameraFileAnswer::COMMAND => of::<CameraFileAnswer>(),
