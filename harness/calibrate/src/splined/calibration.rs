@@ -4,7 +4,7 @@ use calibench_adjust::{Found, SplinedPlace, SplinedQuality, SplinedSolution, Use
 use calibench_model::camera::CameraModel;
 use calibench_model::convert::cell_share;
 
-use super::doubts::SplinedDoubt;
+use super::doubted::SplinedDoubt;
 use super::prepared::SplinedPrepared;
 use crate::usual_limit_px;
 

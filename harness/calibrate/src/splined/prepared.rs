@@ -82,11 +82,12 @@ fn lean(
     settings: &Settings,
     optics: &Optics,
 ) -> Result<(Prepared, Camera, Network), CalibrationError> {
+    let gross = if settings.gross == GrossErrors::Kept { GrossErrors::Kept } else { GrossErrors::Weighted(BOUND) };
     let mut why = None;
     for model in LEAN {
         let optics = Optics { model: Some(model.to_owned()), solve: None, priors: Vec::new(), ..optics.clone() };
-        let own = Settings { cameras: vec![optics], datum: DatumChoice::Fixed, gross: GrossErrors::Weighted(BOUND), ..settings.clone() };
-        let found = prepare(points.clone(), control, &own).and_then(|prepared| {
+        let own = Settings { cameras: vec![optics], datum: DatumChoice::Fixed, gross, ..settings.clone() };
+        let found = prepared_with_board(points, control, own).and_then(|prepared| {
             let (solution, ..) = prepared.solution()?;
             let (camera, mut network) = (solution.cameras()[0], ended(&solution));
             network.cameras = vec![Interior::fixed(network.cameras[0].name.clone(), camera)];
@@ -99,6 +100,17 @@ fn lean(
         }
     }
     why.map_or_else(|| refuse("no lean camera"), Err)
+}
+
+/// A board may be bent: with a camera that does not picture the lens that cannot be tested, and three coefficients cost little.
+fn prepared_with_board(points: &Points, control: &[ControlRow], settings: Settings) -> Result<Prepared, CalibrationError> {
+    if settings.shape != BoardShape::Tested {
+        return prepare(points.clone(), control, &settings);
+    }
+    match prepare(points.clone(), control, &Settings { shape: BoardShape::Bent, ..settings.clone() }) {
+        Err(CalibrationError::NoBoard { .. }) => prepare(points.clone(), control, &Settings { shape: BoardShape::Flat, ..settings }),
+        found => found,
+    }
 }
 
 /// fx, fy, cx and cy of the stereographic camera that pictures what `lean` does, by least squares over the image points.
