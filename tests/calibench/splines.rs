@@ -136,7 +136,10 @@ fn what_splines_do_not_go_with_is_said() {
         assert!(said.contains(why) && !said.contains("panicked"), "{more:?}: {said}");
     }
     let named = refused(&["--model", "splined:14x11:60:3"]);
-    assert!(named.contains(".png and ") && named.contains(" more; expected a horizontal field of view of 1") && named.len() < 600, "{named}");
+    assert!(
+        named.contains(".png and ") && named.contains(" more; expected a horizontal field of view of 1") && named.len() < 600,
+        "{named}"
+    );
 }
 
 /// The board that mrcal 2.2 and 2.5 adjusted: the same sums of squares from zero control points.
@@ -151,7 +154,19 @@ fn a_board_of_186_images_is_adjusted_as_mrcal_does() {
     let of = |what: &str| reference["splined_30x20_170_order3"][what].clone();
     let core: Vec<f64> = of("core_held")["core"].as_array().unwrap().iter().map(number).collect();
     let hold = format!("fx={},fy={},cx={},cy={}", core[0], core[1], core[2], core[3]);
-    let model = ["--size", "6016x4016", "--model", "splined:30x20:170:3", "--sigma", "1", "--covariances", "--plain", "--board-shape", "bent-axes", "--json"];
+    let model = [
+        "--size",
+        "6016x4016",
+        "--model",
+        "splined:30x20:170:3",
+        "--sigma",
+        "1",
+        "--covariances",
+        "--plain",
+        "--board-shape",
+        "bent-axes",
+        "--json",
+    ];
     let (_, found) = answer(folder.path(), &[&model[..], &["--hold", &hold]].concat());
     let near = |what: &str, expected: &Value, by: f64| {
         let (own, other) = (number(&found[what]), number(expected));

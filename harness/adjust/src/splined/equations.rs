@@ -29,6 +29,15 @@ pub(super) struct SplinedStep {
     pub(super) poses: Vec<[f64; 6]>,
 }
 
+impl SplinedStep {
+    /// A part of it.
+    pub(super) fn times(&self, part: f64) -> Self {
+        let mut step = self.clone();
+        step.kept.iter_mut().chain(step.poses.as_flattened_mut()).for_each(|value| *value *= part);
+        step
+    }
+}
+
 /// Splines that are adjusted: where everything stands.
 #[derive(Clone, Debug)]
 pub(super) struct Frame<'n> {
@@ -84,7 +93,11 @@ impl<'n> Frame<'n> {
         let mut moved = state.clone();
         let [core, control, shapes] = self.parts(&step.kept);
         moved.camera.core.iter_mut().zip(core).for_each(|(value, change)| *value += change);
-        moved.camera.control.as_flattened_mut().iter_mut().zip(control).for_each(|(value, change)| *value += change);
+        // Images are linear in fx and fx times the control points, together: steps in these keep to the valley along which the two stand for each other.
+        let kept = [0, 1].map(|axis| state.camera.core[axis] / moved.camera.core[axis]);
+        for (point, change) in moved.camera.control.iter_mut().zip(control.chunks_exact(2)) {
+            (0..2).for_each(|axis| point[axis] += change[axis] * kept[axis]);
+        }
         moved.surfaces.as_flattened_mut().iter_mut().zip(shapes).for_each(|(value, change)| *value += change);
         moved.poses.iter_mut().zip(&step.poses).for_each(|(pose, step)| *pose = turned(pose, step));
         moved

@@ -28,8 +28,15 @@ pub struct SplinedPlace {
     pub is_held: bool,
 }
 
-/// What is kept that an image at a place depends on: which, and the derivatives of x and y.
-type Row = Vec<(usize, [f64; 2])>;
+/// A place with what its image depends on.
+struct Seen {
+    at: PixelPoint,
+    /// Which of what is kept, and the derivatives of x and y.
+    row: Vec<(usize, [f64; 2])>,
+    /// Derivatives of x and y by a small rotation of the camera.
+    turn: Matrix2x3<f64>,
+    is_held: bool,
+}
 
 impl SplinedQuality {
     pub(super) fn new(camera: &Splined, cofactors: Vec<f64>, factor: f64, rays: impl Iterator<Item = Ray>) -> Self {
@@ -65,16 +72,16 @@ impl SplinedQuality {
 
     /// The uncertainty at places of the frame, of which those that image points hold tell how the camera may turn: three at least.
     pub fn at(&self, places: impl Iterator<Item = PixelPoint>) -> Vec<SplinedPlace> {
-        let seen: Vec<(PixelPoint, Row, Matrix2x3<f64>, bool)> = places.filter_map(|at| self.seen(at)).collect();
-        let any_held = seen.iter().any(|(.., held)| *held);
+        let seen: Vec<Seen> = places.filter_map(|at| self.seen(at)).collect();
+        let any_held = seen.iter().any(|seen| seen.is_held);
         let n = self.covariance.nrows();
         // What the camera turns by where a number changes: A = (R^T R)^-1 R^T J.
-        let (mut normal, mut turn) = (Matrix3::zeros(), Matrix3xX::zeros(n));
-        for (_, row, by_turn, _) in seen.iter().filter(|(.., held)| *held || !any_held) {
-            normal += by_turn.tr_mul(by_turn);
-            for &(column, by) in row {
+        let (mut normal, mut turn) = (Matrix3::<f64>::zeros(), Matrix3xX::<f64>::zeros(n));
+        for place in seen.iter().filter(|seen| seen.is_held || !any_held) {
+            normal += place.turn.tr_mul(&place.turn);
+            for &(column, by) in &place.row {
                 let mut into = turn.column_mut(column);
-                into += by_turn.tr_mul(&Vector2::from(by));
+                into += place.turn.tr_mul(&Vector2::from(by));
             }
         }
         if let Some(inverse) = normal.try_inverse() {
@@ -84,9 +91,9 @@ impl SplinedQuality {
         }
         let turned = &self.covariance * turn.transpose();
         let own = &turn * &turned;
-        let of = |(at, row, by_turn, is_held): &(PixelPoint, Row, Matrix2x3<f64>, bool)| {
-            let mut q = Matrix2::zeros();
-            let mut with_turn = Matrix2x3::zeros();
+        let of = |Seen { at, row, turn: by_turn, is_held }: &Seen| {
+            let mut q = Matrix2::<f64>::zeros();
+            let mut with_turn = Matrix2x3::<f64>::zeros();
             for &(i, a) in row {
                 for &(j, b) in row {
                     let c = self.covariance[(j, i)];
@@ -104,7 +111,7 @@ impl SplinedQuality {
         seen.iter().map(of).collect()
     }
 
-    fn seen(&self, at: PixelPoint) -> Option<(PixelPoint, Row, Matrix2x3<f64>, bool)> {
+    fn seen(&self, at: PixelPoint) -> Option<Seen> {
         let ray = self.camera.unproject(at).ok()?;
         let image = self.camera.picture(ray).ok()?;
         let ([fx, fy, ..], [x, y]) = (self.camera.core, image.distorted);
@@ -113,10 +120,10 @@ impl SplinedQuality {
             image.control().flat_map(|(place, share)| [(CORE + 2 * place, [fx * share, 0.0]), (CORE + 2 * place + 1, [0.0, fy * share])]);
         let row = core.chain(control).collect();
         let [first, second] = [0, 1].map(|axis| by_turn(image.by_ray[axis], ray));
-        let by_turn = Matrix2x3::from_fn(|i, j| if i == 0 { first[j] } else { second[j] });
+        let turn = Matrix2x3::from_fn(|i, j| if i == 0 { first[j] } else { second[j] });
         let columns = self.camera.cells()[0];
         let is_held = self.camera.cell(ray).is_some_and(|[column, row]| self.points[row * columns + column] > 0);
-        Some((at, row, by_turn, is_held))
+        Some(Seen { at, row, turn, is_held })
     }
 
     /// How many control points no image point depends on: the prior alone holds them.
