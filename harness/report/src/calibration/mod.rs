@@ -18,6 +18,8 @@ mod rig;
 mod rig_stands;
 mod scale;
 mod sets_page;
+mod splined;
+mod splined_page;
 mod tables;
 mod uncertainty;
 mod warnings;
@@ -32,6 +34,8 @@ pub use ply::scene_ply;
 pub use rig::rig_summary;
 pub use uncertainty::FrameUncertainty;
 pub use rig_stands::rig_stands;
+pub use splined::splined_summary;
+pub use splined_page::write_splined_report;
 pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

@@ -18,6 +18,7 @@ mod rig;
 mod rig_stands;
 mod schema;
 mod task;
+mod splined;
 mod text;
 
 use std::io::{self, Write};
@@ -39,6 +40,7 @@ pub use rig::RigAnswer;
 pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
 pub use task::TaskAnswer;
+pub use splined::SplinedAnswer;
 
 /// What a command answers.
 pub trait Answer: Serialize + JsonSchema {

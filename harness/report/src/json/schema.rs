@@ -6,13 +6,14 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer, RigStandsAnswer, TaskAnswer,
+    MeasurementAnswer, RigAnswer, RigStandsAnswer, SplinedAnswer, TaskAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 10] = [
+pub const COMMANDS: [&str; 12] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
+    SplinedAnswer::COMMAND,
     JudgementAnswer::COMMAND,
     RigStandsAnswer::COMMAND,
     ConversionAnswer::COMMAND,
@@ -32,6 +33,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
     Some(match command {
         CalibrationAnswer::COMMAND => of::<CalibrationAnswer>(),
         RigAnswer::COMMAND => of::<RigAnswer>(),
+        SplinedAnswer::COMMAND => of::<SplinedAnswer>(),
         JudgementAnswer::COMMAND => of::<JudgementAnswer>(),
         RigStandsAnswer::COMMAND => of::<RigStandsAnswer>(),
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
