@@ -64,7 +64,8 @@ fn a_board_is_measured_and_serves_later_photographs() {
     assert!(own < 0.6 * nominal, "{own} {nominal}");
 
     let judged = |more: &[&str]| {
-        let models = ["-m", "parametric_corner", "-m", "forstner:window=11", "-m", "saddle:window=7", "--model", "opencv4", "--splits", "2"];
+        let models =
+            ["-m", "parametric_corner", "-m", "forstner:window=11", "-m", "saddle:window=7", "--model", "opencv4", "--splits", "2"];
         let output = run(folder.path(), &[&["judge", "-q", "later", "--board", BOARD], &models[..], more].concat());
         stdout(&output)
     };
@@ -81,7 +82,10 @@ fn what_is_stated_of_a_board_is_said_and_what_is_not_too() {
     let folder = photographs();
     let plain = calibrated(folder.path(), &["first"]);
     let exact: Vec<&str> = plain["taken_as_exact"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
-    assert_eq!(exact, ["the scale of the board (--board-scale)", "the places of its points (--print-noise, --board-file, --board-shape free)"]);
+    assert_eq!(
+        exact,
+        ["the scale of the board (--board-scale)", "the places of its points (--print-noise, --board-file, --board-shape free)"]
+    );
     let stated = calibrated(folder.path(), &["first", "--board-scale", "1.01:2e-3", "--print-noise", "0.08"]);
     assert_eq!(stated["taken_as_exact"].as_array().unwrap().len(), 0);
     assert_eq!((stated["board"]["scale"]["sigma"].as_f64(), stated["board"]["print_noise"].as_f64()), (Some(2e-3), Some(0.08)));
@@ -123,7 +127,9 @@ fn files_of_other_boards_and_other_mistakes_are_refused() {
         let words = refused(folder.path(), &[&["calibrate", "-q", "first", "--board", BOARD], arguments].concat());
         assert!(words.contains(expected), "{arguments:?}: {words}");
     }
-    let few: Vec<String> = (1..4).map(|k| std::fs::read_dir(folder.path().join("first")).unwrap().nth(k).unwrap().unwrap().path().display().to_string()).collect();
+    let few: Vec<String> = (1..4)
+        .map(|k| std::fs::read_dir(folder.path().join("first")).unwrap().nth(k).unwrap().unwrap().path().display().to_string())
+        .collect();
     let few: Vec<&str> = few.iter().map(String::as_str).collect();
     let words = refused(folder.path(), &[&["calibrate", "-q", "--board", BOARD, "--save-board", "few.csv"], &few[..]].concat());
     assert!(words.contains("3 photographs; expected 4") && !folder.path().join("few.csv").exists(), "{words}");
@@ -146,6 +152,7 @@ fn half_of_opencvs_photographs_measure_the_board_of_the_others() {
     };
     let measured = of(&first, &["--save-board", "board.csv"]);
     assert!(measured["board"]["measured"]["in_plane"].as_f64().is_some_and(|rms| (0.03..0.2).contains(&rms)), "{measured}");
-    let [nominal, own] = [&["--board-shape", "flat"][..], &["--board-file", "board.csv"]].map(|more| of(&later, more)["rms_px"].as_f64().unwrap());
+    let [nominal, own] =
+        [&["--board-shape", "flat"][..], &["--board-file", "board.csv"]].map(|more| of(&later, more)["rms_px"].as_f64().unwrap());
     assert!(own < 0.75 * nominal, "{own} {nominal}");
 }

@@ -22,6 +22,7 @@ pub struct Reached(pub(crate) State);
 
 impl Reached {
     /// The same without the object points that go, by their index.
+    #[must_use]
     pub fn without(mut self, goes: &[bool]) -> Self {
         let mut goes = goes.iter();
         self.0.points.retain(|_| !goes.next().is_some_and(|goes| *goes));

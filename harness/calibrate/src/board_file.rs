@@ -1,6 +1,6 @@
 //! Measured corners in the place of a board's nominal ones.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use calibench_model::{BoardCorner, ControlRow, escape};
 use nalgebra::Point3;
@@ -35,7 +35,9 @@ pub enum OtherBoard {
         strange: Vec<String>,
     },
     /// A corner far from where the board has it.
-    #[error("`{target}` is {off} from where the board has it, and its next corner is {step} away: is it the file of a board of another size, or in another frame?")]
+    #[error(
+        "`{target}` is {off} from where the board has it, and its next corner is {step} away: is it the file of a board of another size, or in another frame?"
+    )]
     Elsewhere {
         /// The corner.
         target: String,
@@ -64,8 +66,8 @@ pub fn with_corners(control: &[ControlRow], corners: &[BoardCorner]) -> Result<V
         return Err(OtherBoard::Missing { found, expected, missing });
     }
     if found != expected {
-        let known: HashMap<&str, ()> = control.iter().map(|row| (row.target.as_str(), ())).collect();
-        let strange = corners.iter().map(|corner| corner.target.clone()).filter(|name| !known.contains_key(name.as_str())).collect();
+        let known: HashSet<&str> = control.iter().map(|row| row.target.as_str()).collect();
+        let strange = corners.iter().map(|corner| corner.target.clone()).filter(|name| !known.contains(name.as_str())).collect();
         return Err(OtherBoard::Strange { found, expected, strange });
     }
     let place = |row: &ControlRow| Point3::from(row.position);

@@ -117,7 +117,9 @@ fn with_shape(settings: &Settings) -> Result<Settings, CalibrationError> {
             _ => return Err(CalibrationError::NotMeasured { why: "every corner is free when it is; expected --board-shape free" }),
         }
         if !settings.distances.is_empty() || !settings.stations.is_empty() {
-            return Err(CalibrationError::NotMeasured { why: "its scale and place are those of its nominal corners, and distances or poses are given" });
+            return Err(CalibrationError::NotMeasured {
+                why: "its scale and place are those of its nominal corners, and distances or poses are given",
+            });
         }
     }
     match settings.shape {

@@ -32,7 +32,9 @@ pub struct StatedBoard {
 
 /// Text that is no scale of a board.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("`{0}` is no scale of a board: expected true over nominal length and its standard deviation, between 0.5 and 2 and below 0.1, as in 1.0003:2e-4")]
+#[error(
+    "`{0}` is no scale of a board: expected true over nominal length and its standard deviation, between 0.5 and 2 and below 0.1, as in 1.0003:2e-4"
+)]
 pub struct NoBoardScale(String);
 
 impl FromStr for BoardScale {
@@ -70,7 +72,9 @@ impl StatedBoard {
         let refused = |why: &'static str| Err(CalibrationError::BoardScale { why });
         match self.scale {
             Some(_) if !settings.distances.is_empty() => refused("measured distances say the scale, too"),
-            Some(_) if settings.stations.iter().any(|row| row.centre.is_some()) => refused("observed projection centres say the scale, too"),
+            Some(_) if settings.stations.iter().any(|row| row.centre.is_some()) => {
+                refused("observed projection centres say the scale, too")
+            }
             _ => Ok(()),
         }
     }

@@ -17,7 +17,8 @@ impl Calibration<'_> {
         }
         let by_others = !settings.distances.is_empty() && network.datum != Datum::Control;
         let is_scaled = settings.board.scale.is_some() || by_others;
-        let is_shaped = fixed == 0 || matches!(self.prepared.shape, Shape::Flat { .. } | Shape::Bent { .. }) || settings.shape == BoardShape::Free;
+        let is_shaped =
+            fixed == 0 || matches!(self.prepared.shape, Shape::Flat { .. } | Shape::Bent { .. }) || settings.shape == BoardShape::Free;
         let words = [
             (!is_scaled).then(|| "the scale of the board (--board-scale)".to_owned()),
             (!is_shaped).then(|| "its flatness (--board-shape)".to_owned()),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_cameras::inputs_of;
+use calibench_cameras::{ReadOptions, inputs_of};
 use calibench_exchange::read_control;
 use calibench_files::bounded;
 use calibench_model::boards::Board;
@@ -27,6 +27,7 @@ use crate::failure::{Failure, project_failure};
 const MOST_SLICES: usize = 6;
 
 #[derive(Args)]
+#[expect(clippy::struct_field_names, reason = "the file is one of a task")]
 #[command(group(ArgGroup::new("known").required(true).args(["camera", "calibration"])))]
 pub struct Task {
     /// What is measured, and from where: TOML with sigma (px), [measure] with length, point, angle, plane or rotation, [[image]] with centre and angles or target, and [known_plane] for a single image
@@ -126,7 +127,11 @@ impl Task {
 
     fn known(&self, cameras: Option<&Path>) -> Result<Known, Failure> {
         match (&self.camera, cameras) {
-            (Some(file), _) => Ok(Known { named: inputs::named_camera(file, self.size)?, halves: None, doubts: Vec::new() }),
+            (Some(file), _) => Ok(Known {
+                named: inputs::first(file, &ReadOptions { size: self.size, ..ReadOptions::default() })?,
+                halves: None,
+                doubts: Vec::new(),
+            }),
             (None, Some(file)) => self.of_calibration(file),
             (None, None) => Err(Failure::input("expected --camera or --calibration")),
         }

@@ -33,7 +33,7 @@ const FORM: Form = Form {
 /// The first mistake, with line and column: a missing or unknown column, a number that is none, a standard deviation that is not positive, a covariance beyond
 /// those of its standard deviations, a corner given twice, no row at all.
 pub fn read_board_corners(path: &Path) -> Result<Vec<BoardCorner>, PointFileError> {
-    FORM.read(path, corner)
+    FORM.read(path, |file, row| corner(file, &row))
 }
 
 /// As [`read_board_corners`], from anything that can be read; `file` is its name in errors.
@@ -41,7 +41,7 @@ pub fn read_board_corners(path: &Path) -> Result<Vec<BoardCorner>, PointFileErro
 /// # Errors
 /// As [`read_board_corners`].
 pub fn parse_board_corners(file: &str, input: impl Read) -> Result<Vec<BoardCorner>, PointFileError> {
-    FORM.parse(file, input, corner)
+    FORM.parse(file, input, |file, row| corner(file, &row))
 }
 
 /// Writes a file of a measured board; columns that no row has are left out.
@@ -58,15 +58,16 @@ pub fn write_board_corners(output: impl Write, corners: &[BoardCorner]) -> io::R
     let columns: Vec<&str> = std::iter::once(&FORM.key).chain(FORM.required).chain(optional).copied().collect();
     let cells = |corner: &BoardCorner| {
         let known = corner.position.iter().chain(&corner.sigmas).map(f64::to_string).collect::<Vec<_>>();
-        let optional = groups(corner).into_iter().zip(FORM.optional).zip(there).filter(|(_, there)| *there).flat_map(|((group, columns), _)| {
-            group.map_or_else(|| vec![String::new(); columns.len()], |numbers| numbers.iter().map(f64::to_string).collect())
-        });
+        let optional =
+            groups(corner).into_iter().zip(FORM.optional).zip(there).filter(|(_, there)| *there).flat_map(|((group, columns), _)| {
+                group.map_or_else(|| vec![String::new(); columns.len()], |numbers| numbers.iter().map(f64::to_string).collect())
+            });
         std::iter::once(corner.target.clone()).chain(known).chain(optional).collect::<Vec<String>>()
     };
     write_table(output, &columns, corners.iter().map(cells))
 }
 
-fn corner(file: &str, row: Row) -> Result<BoardCorner, PointFileError> {
+fn corner(file: &str, row: &Row) -> Result<BoardCorner, PointFileError> {
     let wrong = |column: &str, problem: &str| Err(wrong(file, Some(row.line), Some(column), problem.to_owned()));
     let [x, y, z, sx, sy, sz] = row.numbers[..] else { return wrong(FORM.key, "expected six numbers") };
     let sigmas = [sx, sy, sz];
@@ -115,7 +116,10 @@ mod tests {
     fn mistakes_have_a_line_and_a_column() {
         let head = "target,X,Y,Z,sX,sY,sZ";
         for (text, expected) in [
-            ("target,X,Y,Z\na,1,2,3\n".to_owned(), "b.csv:1, column `sX`: missing in the header; every board file has target,X,Y,Z,sX,sY,sZ"),
+            (
+                "target,X,Y,Z\na,1,2,3\n".to_owned(),
+                "b.csv:1, column `sX`: missing in the header; every board file has target,X,Y,Z,sX,sY,sZ",
+            ),
             (format!("{head}\na,1,2,inf,1,1,1\n"), "b.csv:2, column `Z`: expected a finite number"),
             (format!("{head}\na,1,2,3,1,0,1\n"), "b.csv:2, column `sY`: expected a positive standard deviation"),
             (format!("{head}\na,1,2,3,1,1,1\na,1,2,3,1,1,1\n"), "b.csv:3, column `target`: `a` is already on line 2"),

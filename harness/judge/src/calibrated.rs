@@ -50,7 +50,8 @@ pub fn calibrate(material: &Material, operator: usize, views: &[usize], settings
 
 /// The corner of each point of a network.
 fn corners(material: &Material, network: &Network) -> Vec<usize> {
-    let place: HashMap<String, usize> = (0..material.field.count()).map(|corner| (material.field.name(corner).into_owned(), corner)).collect();
+    let place: HashMap<String, usize> =
+        (0..material.field.count()).map(|corner| (material.field.name(corner).into_owned(), corner)).collect();
     network.points.iter().filter_map(|point| place.get(&point.name).copied()).collect()
 }
 

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use calibench_diagnostics::nearest;
 use calibench_calibrate::{OtherBoard, with_corners};
+use calibench_diagnostics::nearest;
 use calibench_measure::Board;
 use calibench_model::boards::{self, BoardError};
 use calibench_model::{BoardCorner, ControlRow, escape};
@@ -73,7 +73,9 @@ impl Field {
     /// The points as control.
     pub fn control(&self) -> Vec<ControlRow> {
         match self {
-            Self::Board { .. } | Self::Measured { .. } => (0..self.count()).map(|point| ControlRow::new(self.name(point), self.object(point))).collect(),
+            Self::Board { .. } | Self::Measured { .. } => {
+                (0..self.count()).map(|point| ControlRow::new(self.name(point), self.object(point))).collect()
+            }
             Self::Points(points) => points.clone(),
         }
     }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
-    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, StatedBoard, Suspected,
-    calibrate as solve, prepare, suspected,
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, StatedBoard,
+    Suspected, calibrate as solve, prepare, suspected,
 };
 use calibench_exchange::write_board_corners;
 use calibench_files::OutputFile;

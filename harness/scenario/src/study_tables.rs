@@ -120,6 +120,6 @@ impl<'i> StudyTables<'i> {
         };
         let study = (reader.read)((table, list), &seen, methods, problems)?;
         let stations = study.cameras_at(Cow::Owned(views.stations)).into_owned();
-        Some(ViewsSubject { recognition, study, stations, ..views })
+        Some(ViewsSubject { stations, recognition, study, ..views })
     }
 }

@@ -13,6 +13,7 @@ use crate::{Source, TaskError};
 /// What is left of a unit of a pose beside all others, at least.
 const DETERMINED: f64 = 1e-6;
 
+#[expect(clippy::struct_field_names, reason = "derivatives by")]
 /// A picture of a point with its derivatives: by the camera's numbers, the pose and the point.
 struct Linear {
     /// Of x and y by the parameters' standard normal numbers.

@@ -90,7 +90,7 @@ pub fn parse(file: &str, text: &str) -> Result<Task, Problems> {
     match (images.len(), &wire.known_plane) {
         (0, _) => check.wrong(0..0, "has no [[image]]; expected two or more, or one with [known_plane]"),
         (1, None) => {
-            check.wrong(0..0, "has one [[image]] and no [known_plane]; expected a second image, or the plane that all of it lies in")
+            check.wrong(0..0, "has one [[image]] and no [known_plane]; expected a second image, or the plane that all of it lies in");
         }
         (2.., Some(plane)) => check.wrong(plane.span(), "several images need no [known_plane]; leave it out, or the other images"),
         _ => {}

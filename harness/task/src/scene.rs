@@ -58,8 +58,8 @@ impl<'a> Scene<'a> {
         let camera = known.camera;
         let control = rows.map_or(Ok(Vec::new()), |rows| control_points(task, rows))?;
         let objects = task.quantity.points();
-        let points = all_seen(camera, &task.images, objects.iter().copied());
-        let marks = all_seen(camera, &task.images, control.iter().map(|point| point.object));
+        let points = all_seen(camera, &task.images, || objects.iter().copied());
+        let marks = all_seen(camera, &task.images, || control.iter().map(|point| point.object));
         let expected = if task.plane.is_some() { 1 } else { 2 };
         for point in 0..objects.len() {
             let found = points.iter().flatten().filter(|seen| seen.of == point).count();
@@ -142,7 +142,7 @@ impl<'a> Scene<'a> {
 }
 
 /// What of `objects` lies in the frame of each image.
-fn all_seen(camera: &Camera, images: &[Station], objects: impl Iterator<Item = Point3<f64>> + Clone) -> Vec<Vec<Seen>> {
+fn all_seen<I: Iterator<Item = Point3<f64>>>(camera: &Camera, images: &[Station], objects: impl Fn() -> I) -> Vec<Vec<Seen>> {
     let mut number = 0;
     let mut of_image = |station: &Station| {
         let one = |(of, object): (usize, Point3<f64>)| {
@@ -150,7 +150,7 @@ fn all_seen(camera: &Camera, images: &[Station], objects: impl Iterator<Item = P
             number += 1;
             Some(Seen { of, number: number - 1, at })
         };
-        objects.clone().enumerate().filter_map(one).collect()
+        objects().enumerate().filter_map(one).collect()
     };
     images.iter().map(&mut of_image).collect()
 }

@@ -14,7 +14,7 @@ impl View {
         let at = point.position;
         let position = self.place_in(other, at)?;
         let slopes = (point.covariance.is_some() || point.affine.is_some()).then(|| self.slopes_in(other, at)).flatten();
-        let moved = Start { position, affine: None, covariance: None, ..*point };
+        let moved = Start { position, affine: None, covariance: None, warp: None, ..*point };
         let Some([[a, b], [c, d]]) = slopes else { return Some(moved) };
         let covariance = point.covariance.map(|s| Covariance {
             sxx: a * a * s.sxx + 2.0 * a * b * s.sxy + b * b * s.syy,
@@ -61,6 +61,7 @@ mod tests {
             kind: None,
             affine: Some(Affine { axx: 30.0, axy: 1.0, ayx: -2.0, ayy: 28.0 }),
             covariance: Some(Covariance { sxx: 0.01, sxy: 0.002, syy: 0.02 }),
+            warp: None,
         };
         let there = from.point_in(&to, &point).unwrap();
         let back = to.point_in(&from, &there).unwrap();

@@ -104,7 +104,7 @@ impl SplinedQuality {
                 (0..2).for_each(|k| (0..3).for_each(|t| with_turn[(k, t)] += a[k] * turned[(i, t)]));
             }
             let cross = with_turn * by_turn.transpose();
-            let left = q - cross - cross.transpose() + by_turn * &own * by_turn.transpose();
+            let left = q - cross - cross.transpose() + by_turn * own * by_turn.transpose();
             let covariance = Covariance { sxx: left[(0, 0)], sxy: left[(0, 1)], syy: left[(1, 1)] };
             SplinedPlace { at: *at, covariance, is_held: *is_held }
         };

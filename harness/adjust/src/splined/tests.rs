@@ -95,9 +95,9 @@ fn along(frame: &Frame<'_>, unknown: usize, by: f64) -> SplinedStep {
     let (kept, images) = (frame.free.len(), frame.of.network.images.len());
     let mut step = SplinedStep { kept: vec![0.0; kept], poses: vec![[0.0; 6]; images] };
     if unknown < kept {
-        step.kept[unknown] = by
+        step.kept[unknown] = by;
     } else {
-        step.poses.as_flattened_mut()[unknown - kept] = by
+        step.poses.as_flattened_mut()[unknown - kept] = by;
     }
     step
 }

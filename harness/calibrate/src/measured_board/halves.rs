@@ -3,11 +3,11 @@
 use calibench_adjust::{Network, Options, adjust};
 use nalgebra::{Point3, Vector3};
 
-use super::printer::{Printer, Sums};
 use super::Moved;
-use crate::{Board, part_of};
+use super::printer::{Printer, Sums};
 use crate::choice::HALF;
 use crate::ended::ITERATIONS;
+use crate::{Board, part_of};
 
 /// By which bits of an image's place it goes into one half or the other: a split each.
 const SPLITS: [usize; 4] = [1, 2, 3, 5];
@@ -95,7 +95,7 @@ pub(super) fn repeats(
         in_plane: of(&[0, 1]),
         across: of(&[2]),
         sigmas: if expected > 0.0 { (apart / n / expected).sqrt() } else { 1.0 },
-        printer: of_printer.and_then(|sums| sums.printer()),
+        printer: of_printer.and_then(Sums::printer),
     })
 }
 

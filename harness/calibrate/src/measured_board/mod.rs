@@ -98,7 +98,9 @@ impl Calibration<'_> {
     fn board_of_corners(&self) -> Result<MeasuredBoard, String> {
         let photographs = self.solution.poses().len();
         if photographs < LEAST {
-            return Err(format!("{photographs} photographs; expected {LEAST} of it at least, and {ENOUGH} or more, tilted and turned, that hold it well"));
+            return Err(format!(
+                "{photographs} photographs; expected {LEAST} of it at least, and {ENOUGH} or more, tilted and turned, that hold it well"
+            ));
         }
         let free = self.ended();
         if free.datum != Datum::Inner || self.solution.counts().redundancy() <= 0 {

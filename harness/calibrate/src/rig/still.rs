@@ -95,7 +95,7 @@ pub fn still_stands(found: &RigCalibration<'_>, before: &[NamedCamera], distance
                 let names = [found.name_of(0), found.name_of(camera)];
                 refused(format!("no point at a distance of {distance} is in the images of both {} and {}", names[0], names[1]))
             })?;
-            stand(found, camera, &was, &sights)
+            Ok(stand(found, camera, &was, &sights))
         })
         .collect()
 }
@@ -109,7 +109,7 @@ fn with_y_up(pose: &calibench_model::named_camera::Pose) -> Pose {
     }
 }
 
-fn stand(found: &RigCalibration<'_>, camera: usize, was: &Pose, sights: &Sights) -> Result<Stand, CalibrationError> {
+fn stand(found: &RigCalibration<'_>, camera: usize, was: &Pose, sights: &Sights) -> Stand {
     let now = found.covariances.relative(0, camera);
     let times = by_sets(found, camera, &now);
     let covariance = now.covariance * (times * times);
@@ -122,7 +122,7 @@ fn stand(found: &RigCalibration<'_>, camera: usize, was: &Pose, sights: &Sights)
         Known { value: part.norm(), sigma: variance.max(0.0).sqrt() }
     };
     let turned = along(0, step.fixed_rows::<3>(0).into_owned());
-    Ok(Stand {
+    Stand {
         camera,
         moved: along(3, step.fixed_rows::<3>(3).into_owned()),
         turned_deg: Known { value: turned.value.to_degrees(), sigma: turned.sigma.to_degrees() },
@@ -131,7 +131,7 @@ fn stand(found: &RigCalibration<'_>, camera: usize, was: &Pose, sights: &Sights)
         f,
         p,
         times,
-    })
+    }
 }
 
 /// By how much more leaving moments out moves a camera than the adjustment says; 1 at least.

@@ -5,8 +5,8 @@ pub(crate) mod test;
 
 use calibench_adjust::{AdjustError, Network, Status, Surface};
 
-pub(crate) use board::is_flat;
 pub use board::Board;
+pub(crate) use board::is_flat;
 pub use test::Bend;
 
 use crate::{BoardShape, CalibrationError, Settings};

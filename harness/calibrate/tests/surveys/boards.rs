@@ -1,8 +1,8 @@
 //! Boards whose corners are measured, and boards of which something is stated.
 
 use calibench_calibrate::{
-    AdjustedLength, BoardScale, BoardShape, Calibration, CalibrationError, MeasuredBoard, Prepared, Settings, StatedBoard, Subject, calibrate, prepare,
-    with_corners,
+    AdjustedLength, BoardScale, BoardShape, Calibration, CalibrationError, MeasuredBoard, Prepared, Settings, StatedBoard, Subject,
+    calibrate, prepare, with_corners,
 };
 use calibench_model::camera::CameraModel;
 use calibench_model::{MeasuredDistance, Pose};
@@ -104,7 +104,10 @@ fn corners_come_out_within_their_covariances() {
 
 /// How many of `count` perfect boards are told from perfect ones.
 fn alarms(count: u64, photographs: usize) -> usize {
-    (0..count).into_par_iter().filter(|seed| measured(&photographed(photographs, |_| Vector3::zeros(), 0.15, 5000 + seed)).is_told()).count()
+    (0..count)
+        .into_par_iter()
+        .filter(|seed| measured(&photographed(photographs, |_| Vector3::zeros(), 0.15, 5000 + seed)).is_told())
+        .count()
 }
 
 /// In at most one of a hundred: one of 300 is an upper bound (95 %) of 1.6 %.
@@ -231,6 +234,7 @@ fn a_scale_moves_stations_and_lengths_and_no_camera() {
 #[test]
 fn what_nobody_stated_is_taken_as_exact() {
     let scene = photographed(8, |_| Vector3::zeros(), 0.1, 6);
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "of any lifetime")]
     let of = |settings: &Settings| adjusted(&scene, settings, |calibration| calibration.taken_as_exact());
     let flat = of(&settings("opencv4"));
     assert_eq!(flat.len(), 3, "{flat:?}");

@@ -57,11 +57,14 @@ impl BoardArguments {
 
     /// The corners of the board: nominal, or those of the file.
     pub fn corners(&self, nominal: Vec<ControlRow>) -> Result<Vec<ControlRow>, Failure> {
-        self.board_file.as_deref().map_or(Ok(nominal.clone()), |path| of_file(path, &nominal))
+        match &self.board_file {
+            Some(path) => of_file(path, &nominal),
+            None => Ok(nominal),
+        }
     }
 
     /// Writes the board that was measured.
-    pub fn deliver(&self, output: Option<&OutputFile>, calibration: &Calibration<'_>, control: &[ControlRow]) -> Result<(), Failure> {
+    pub fn deliver(output: Option<&OutputFile>, calibration: &Calibration<'_>, control: &[ControlRow]) -> Result<(), Failure> {
         let Some(output) = output else { return Ok(()) };
         match &calibration.measured_board {
             Some(Ok(board)) => {

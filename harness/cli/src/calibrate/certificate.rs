@@ -145,7 +145,11 @@ impl Calibrate {
             photos: (&self.photos, photos),
             method,
             board: self.board.map(|board| board.to_string()),
-            inputs: given.chain(self.cameras.starts()).chain(self.reconstruction.path.iter().flat_map(|path| files_of(path))).collect(),
+            inputs: given
+                .chain(self.cameras.starts())
+                .chain(self.known.inputs().cloned())
+                .chain(self.reconstruction.path.iter().flat_map(|path| files_of(path)))
+                .collect(),
             camera: outputs.camera.as_ref().map(|output| output.path().to_owned()).filter(|path| path.is_file()),
         };
         Recorded::new(calibration, (doubts, suspects), &made).map(Some)

@@ -327,7 +327,7 @@ impl Calibrate {
             })
         };
         let report = outputs.report.as_ref().map_or(Ok(()), report);
-        let board = self.known.deliver(outputs.board.as_ref(), calibration, control);
+        let board = BoardArguments::deliver(outputs.board.as_ref(), calibration, control);
         camera?;
         scene?;
         board?;

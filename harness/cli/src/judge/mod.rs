@@ -112,7 +112,9 @@ impl Judge {
         }
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
-        let inputs = inputs_of(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control).chain(&self.board_file));
+        let inputs = inputs_of(
+            self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control).chain(&self.board_file),
+        );
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("judge", None))).transpose()?;
         let (material, doubts, reading) = self.material(context)?;
         let size = material.size;

@@ -19,6 +19,7 @@ use crate::photos::with_folders;
 use views::Views;
 
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Undistort {
     /// Photographs of one camera, or a folder of them (PNG, JPEG, TIFF, PNM, BMP or WebP, any channels), or one file of points: CSV with image,target,x,y
     #[arg(required = true, value_name = "PHOTO|CSV")]

@@ -36,8 +36,12 @@ impl Study {
     /// The views of a testfield, if it is of such.
     pub fn views(&self) -> Option<&Views> {
         match self {
-            Self::Views(views) | Self::Transfer(views) => Some(views),
-            Self::Network(views, _) | Self::Blocks(views, _) | Self::Calibrators(views, _) | Self::Networks(views, _) => Some(views),
+            Self::Views(views)
+            | Self::Transfer(views)
+            | Self::Network(views, _)
+            | Self::Blocks(views, _)
+            | Self::Calibrators(views, _)
+            | Self::Networks(views, _) => Some(views),
             Self::Scene | Self::Photographs { .. } | Self::Printed(_) => None,
         }
     }

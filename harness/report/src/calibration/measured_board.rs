@@ -71,7 +71,14 @@ fn chance(test: &BoardTest) -> String {
 }
 
 fn repeated(repeats: &Repeats) -> String {
-    let part = |part: &Part| format!("{:.2} ({} object units, {:.0} % of the variance of all photographs)", part.correlation, plain(part.common), 100.0 * part.of_whole);
+    let part = |part: &Part| {
+        format!(
+            "{:.2} ({} object units, {:.0} % of the variance of all photographs)",
+            part.correlation,
+            plain(part.common),
+            100.0 * part.of_whole
+        )
+    };
     let printer = repeats.printer.map_or_else(String::new, |printer| {
         format!(
             "; rows and columns that are off as a whole, as a printer's feed makes them, are {:.0} % of it in the plane, {:.0} % by chance",

@@ -32,10 +32,10 @@ pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;
 pub use rig::rig_summary;
-pub use uncertainty::FrameUncertainty;
 pub use rig_stands::rig_stands;
 pub use splined::splined_summary;
 pub use splined_page::write_splined_report;
+pub use uncertainty::FrameUncertainty;
 pub use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

@@ -17,8 +17,8 @@ mod next;
 mod rig;
 mod rig_stands;
 mod schema;
-mod task;
 mod splined;
+mod task;
 mod text;
 
 use std::io::{self, Write};
@@ -39,8 +39,8 @@ pub use measurement::{MeasurementAnswer, MeasurementCounts};
 pub use rig::RigAnswer;
 pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
-pub use task::TaskAnswer;
 pub use splined::SplinedAnswer;
+pub use task::TaskAnswer;
 
 /// What a command answers.
 pub trait Answer: Serialize + JsonSchema {

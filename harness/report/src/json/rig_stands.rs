@@ -26,7 +26,6 @@ pub struct RigStandsAnswer {
 }
 
 #[derive(Serialize, JsonSchema)]
-#[expect(clippy::struct_field_names, reason = "a key says its unit")]
 struct CameraStands {
     /// Its name.
     name: String,

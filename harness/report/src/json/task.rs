@@ -51,6 +51,7 @@ struct Number {
 }
 
 #[derive(Serialize, JsonSchema)]
+#[expect(clippy::struct_field_names, reason = "keys")]
 struct Share {
     /// What errs.
     source: &'static str,

@@ -47,8 +47,10 @@ pub(super) fn share(share: &BoardShare, cell: &Cell) -> Option<String> {
     });
     text.push_str(&share.moved.filter(|_| share.board_px > 0.0).map_or_else(String::new, |moved| places(&moved)));
     let parts = [(share.operators_px, "the operators"), (share.models_px, "the models")];
-    let parts: Vec<String> =
-        parts.into_iter().filter_map(|(px, what)| Some(format!("{} px separate the middle one of {what} from the best", plain(px?)))).collect();
+    let parts: Vec<String> = parts
+        .into_iter()
+        .filter_map(|(px, what)| Some(format!("{} px separate the middle one of {what} from the best", plain(px?))))
+        .collect();
     let rest = format!("{} px are the rest", plain(freed.holdout.value));
     text.push_str(&format!(". Beside it {}.", super::verdict::listed(&parts.into_iter().chain([rest]).collect::<Vec<_>>())));
     if let Some(nominal) = &share.nominal {

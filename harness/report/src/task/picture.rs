@@ -48,7 +48,7 @@ struct Panel<'m> {
 /// A row of two panels for each map: half of the 95 % interval, and the source that makes the most of it.
 pub fn maps(task: &Task, budget: &Budget, maps: &[Map]) -> Canvas {
     let sides = |map: &Map| map.extent.map(|[low, high]| high - low);
-    let long = maps.iter().flat_map(|map| sides(map)).fold(f64::MIN_POSITIVE, f64::max);
+    let long = maps.iter().flat_map(sides).fold(f64::MIN_POSITIVE, f64::max);
     let extent = |map: &Map| {
         let [width, height] = sides(map).map(|side| (side / long * PANEL).round().max(40.0) as i32);
         (width, height)

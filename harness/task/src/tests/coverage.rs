@@ -66,7 +66,7 @@ struct Board {
 impl Board {
     fn draw(draw: &mut Draw) -> Self {
         let nominal: Vec<Point3<f64>> =
-            (0..63).map(|k| Point3::new(30.0 * (k % 9) as f64 - 120.0, 30.0 * (k / 9) as f64 - 90.0, 0.0)).collect();
+            (0..63).map(|k| Point3::new(30.0 * f64::from(k % 9) - 120.0, 30.0 * f64::from(k / 9) - 90.0, 0.0)).collect();
         let (scale, bend) = (1.0 + SCALE * draw.normal(), BEND * draw.vector());
         let real = nominal.iter().map(|point| {
             let (u, v) = (point.x / 120.0, point.y / 90.0);

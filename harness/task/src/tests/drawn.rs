@@ -18,7 +18,7 @@ const QUANTITIES: [&str; 5] = [
 const REST: &str =
     "[control]\nsigma = 0.08\nflatness_sigma = 0.05\n[temperature]\ndifference = 4\nsigma = 2\nexpansion = 2e-5\nexpansion_sigma = 2e-6\n";
 
-fn known() -> calibench_model::NamedCamera {
+fn known() -> NamedCamera {
     camera(&[("fx", 1.5), ("fy", 1.4), ("cx", 1.0), ("cy", 0.8), ("k1", 0.002)])
 }
 

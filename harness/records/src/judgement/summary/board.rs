@@ -135,7 +135,10 @@ mod tests {
             by(measure::HOLDOUT, own),
             by(measure::BOARD_FREED, freed),
             by(measure::BOARD_NOMINAL, nominal),
-            vec![Row::plain(measure::BOARD_MOVED, "in the plane", 0.05).beside(0.03), Row::plain(measure::BOARD_MOVED, "across", 0.01).beside(0.03)],
+            vec![
+                Row::plain(measure::BOARD_MOVED, "in the plane", 0.05).beside(0.03),
+                Row::plain(measure::BOARD_MOVED, "across", 0.01).beside(0.03),
+            ],
         ];
         found.extend(own.concat().into_iter().map(|row| row.by(&"m".into(), &"a".into())));
         found.extend(by(measure::HOLDOUT, others).into_iter().map(|row| row.by(&"n".into(), &"a".into())));

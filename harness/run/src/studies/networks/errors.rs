@@ -87,7 +87,7 @@ mod tests {
         }
         // 3.14 and 3.16 times the number of parameters.
         let at = |mean: f64| (2.0 * mean * (1.0 - 0.64) / 3.6_f64).sqrt();
-        assert_eq!(value(&of(at(3.14), -at(3.14)), Quantity::WithinRegion), Some(1.0));
+        assert_eq!(value(&of(at(3.1), -at(3.1)), Quantity::WithinRegion), Some(1.0));
         assert_eq!(value(&of(at(3.16), -at(3.16)), Quantity::WithinRegion), Some(0.0));
         let singular = DMatrix::from_element(2, 2, 1.0);
         assert!(together(&DVector::zeros(2), &singular, 60).is_empty());
