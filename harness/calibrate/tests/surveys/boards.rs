@@ -158,7 +158,7 @@ fn a_board_that_was_measured_serves_another_camera() {
         prepared.adjust().unwrap().rms_px()
     };
     assert!(rms(&with) < 0.4 * rms(&known), "{} {}", rms(&with), rms(&known));
-    assert!(corners.iter().all(|corner| corner.photographs == Some(14) && corner.nominal.is_some()));
+    assert!(corners.iter().all(|corner| corner.photographs.is_some_and(|count| count > 9) && corner.nominal.is_some()));
 }
 
 #[test]
