@@ -79,6 +79,7 @@ summary:
 nightly: build wheel
     {{calibench}} check --strict --locked --nightly
     {{calibench}} run --all
+    {{calibench}} run networks/free-many networks/rig-many
     {{calibench}} run $(cd scenarios && ls league/*.toml | sed 's|[.]toml$||')
     {{calibench}} check --strict --locked --nightly --records records
     {{calibench}} check --strict --locked --nightly --against records --records records

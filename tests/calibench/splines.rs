@@ -128,7 +128,7 @@ fn what_splines_do_not_go_with_is_said() {
         (&["--model", "splined:14x11:120:3", "--compare", "fx"], "--compare is not there for splines"),
         (&["--model", "splined:14x11:120:3", "--hold", "k1=3"], "no `k1`"),
         (&["--model", "splined:14x11:120:3", "--hold", "fx=0"], "positive"),
-        (&["--model", "splined:14x11:120:3", "--solve", "k1"], "no `k1`"),
+        (&["--model", "splined:14x11:120:3", "--solve", "fx"], "the core is held"),
         (&["--model", "splined:14x11:120:3", "--board-shape", "free"], "control that is fixed"),
         (&["--hold", "fx=3"], "--hold: holds the core of splines"),
     ] {

@@ -124,7 +124,10 @@ impl Run {
         scenarios.retain(|scenario| !apart.contains(&scenario.name));
         names.retain(|name| !apart.contains(name));
         if scenarios.is_empty() {
-            return Err(Failure::input(format!("nothing to run: `calibench league` runs {}", apart.join(", "))));
+            return Err(Failure::input(format!(
+                "nothing to run: {} take long and are run by their own names, those of the league by `calibench league`",
+                apart.join(", ")
+            )));
         }
         let pages = if self.pages { Some(Pages::of(context, &mut names)?) } else { None };
         if self.pages {

@@ -47,7 +47,7 @@ impl Subject {
         }
     }
 
-    /// Whether `league` runs it, and not `run --all`, where it is left to the night.
+    /// Whether it is run by its name or by `league`, and not with others, where it is left to the night.
     pub fn runs_apart(&self) -> bool {
         match self {
             Self::Photographs(photographs) => photographs.judgement.as_ref().is_some_and(|judgement| judgement.league.is_some()),

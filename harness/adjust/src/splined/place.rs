@@ -10,10 +10,10 @@ use crate::normal::Lost;
 /// No damping, unless it is needed.
 const DAMPING: Damping = Damping { first: 0.0, again: 1e-6, least: 1e-9, rest: 0.0, most: 1e12, factors: (0.1, 10.0) };
 /// Share of the sum of squares that a step must promise for another to follow: along what the prior alone holds (the camera turns, and all control points with it) the way is long
-/// and crooked, and less than this moves nothing by a fiftieth of its standard deviation.
-const WORTH: f64 = 1e-8;
+/// and crooked.
+const WORTH: f64 = 1e-10;
 /// Share that is so little that the sums themselves may not tell it.
-const LITTLE: f64 = 1e-10;
+const LITTLE: f64 = 1e-11;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
 

@@ -193,22 +193,6 @@ fn control_points_are_found_from_none() {
     }
 }
 
-#[test]
-fn a_core_that_is_free_lowers_the_cost_and_the_prior_alone_tells_it_from_control_points() {
-    let held = network(3, 0.3);
-    let free = SplinedNetwork { core: [true; 4], ..held.clone() };
-    let (held, free) = (adjust_splined(&held, &OPTIONS).unwrap(), adjust_splined(&free, &OPTIONS).unwrap());
-    assert!(free.cost() < held.cost() && free.prior_cost() < held.prior_cost() && held.prior_cost() > 0.0);
-    assert_eq!(held.camera().core, [300.0, 304.0, 322.0, 238.0]);
-    let [fx, ..] = free.quality(Variance::Apriori).unwrap().core_sigmas();
-    assert!(fx > 5.0, "{fx}");
-    assert_eq!(held.quality(Variance::Apriori).unwrap().core_sigmas(), [0.0; 4]);
-    // From its end nothing is left to do.
-    let again = free.ended();
-    let again = adjust_splined(&again, &OPTIONS).unwrap();
-    assert!(again.iterations() <= 3 && (again.cost() - free.cost()).abs() < 1e-9 * free.cost());
-}
-
 /// Of many errors the image of a ray scatters as its covariance says, once the rotation is taken off.
 #[test]
 fn where_points_hold_the_splines_they_are_known_and_elsewhere_not() {

@@ -31,10 +31,9 @@ impl SplinedArguments {
         }
     }
 
-    fn core(&self, solve: Option<&[String]>) -> Result<Core, Failure> {
+    fn core(&self) -> Result<Core, Failure> {
         let held = self.hold.iter().try_fold(Core::HELD, |core, text| core.holding(text));
-        let held = held.map_err(|why| Failure::input(format!("--hold: {why}")))?;
-        held.solving(solve.unwrap_or_default()).map_err(|why| Failure::input(format!("--solve: {why}")))
+        held.map_err(|why| Failure::input(format!("--hold: {why}")))
     }
 }
 
@@ -61,9 +60,12 @@ impl Calibrate {
             (self.poses.is_some(), "--poses"),
             (!self.compare.is_empty(), "--compare"),
             (self.scene.is_some(), "--scene"),
+            (self.certificate.is_some(), "--certificate"),
+            (self.known.is_given(), "what is stated of a board (--board-file, --save-board, --board-scale, --print-noise)"),
             (self.huber.is_some(), "--huber"),
             (self.snoop, "--snoop"),
             (self.cameras.has_priors(), "--prior"),
+            (self.cameras.common_solve().is_some(), "--solve (the core is held: --hold says where)"),
         ];
         let name = |(_, name): &(bool, &'static str)| Err(Failure::input(format!("{name} is not there for splines")));
         given.iter().find(|(is_given, _)| *is_given).map_or(Ok(()), name)
@@ -72,8 +74,7 @@ impl Calibrate {
     /// As [`Calibrate::run`], of splines.
     pub(super) fn run_splined(&self, grid: SplineGrid, context: &Context<'_>) -> Result<(), Failure> {
         self.refuse_for_splines()?;
-        let solve = self.cameras.common_solve();
-        let core = self.splined.core(solve.as_deref())?;
+        let core = self.splined.core()?;
         let given = [&self.points, &self.control].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let outputs = self.outputs(&inputs)?;

@@ -26,7 +26,7 @@ pub trait StudyPlan {
         None
     }
 
-    /// Whether `run --all` leaves it to a command of its own.
+    /// Whether `run --all` leaves it, where it is left to the night, to a command of its own.
     fn runs_apart(&self) -> bool {
         false
     }

@@ -106,6 +106,10 @@ impl StudyPlan for Networks {
         self.drawn.iter().any(|(_, sigma)| sigma.is_some_and(|sigma| sigma > 0.0))
     }
 
+    fn runs_apart(&self) -> bool {
+        true
+    }
+
     fn drawn(&self) -> Option<&[(String, Option<f64>)]> {
         Some(&self.drawn)
     }
