@@ -33,6 +33,9 @@ struct Outcome {
     left_out: usize,
     /// Squares of errors over standard uncertainties.
     squares: f64,
+    /// Calibrations, and those of them that are in doubt: what is measured with these is, too.
+    calibrations: usize,
+    doubted: usize,
 }
 
 fn calibrated(here: &Path, points: &str) -> CalibratedCameras {
@@ -80,6 +83,8 @@ fn study(set: &Set) -> Outcome {
             }
         }
         let found = calibrated(here, &points);
+        outcome.calibrations += 1;
+        outcome.doubted += usize::from(!found.doubts.is_empty());
         let camera = &found.cameras[0];
         let known = KnownCamera { halves: camera.halves(), ..KnownCamera::of(&camera.named) };
         measured(set, &known, sigma_px(here), &control, pair.map(|image| &seen[image]), &mut outcome);
@@ -149,8 +154,8 @@ fn told(set: &Set) -> Outcome {
     let outcome = study(set);
     let rms = (outcome.squares / outcome.all as f64).sqrt();
     println!(
-        "{}: {} of {} intervals hold, {} left out, errors {rms:.2} of their standard uncertainties",
-        set.folder, outcome.held, outcome.all, outcome.left_out
+        "{}: {} of {} intervals hold, {} left out, errors {rms:.2} of their standard uncertainties; {} of {} calibrations in doubt",
+        set.folder, outcome.held, outcome.all, outcome.left_out, outcome.doubted, outcome.calibrations
     );
     outcome
 }
@@ -163,13 +168,15 @@ fn told(set: &Set) -> Outcome {
 )]
 fn distances_on_opencvs_board_are_in_their_intervals() {
     let outcome = told(&Set { folder: "opencv-left", corners: [9, 6], print_sigma: 0.07 / 25.0, flatness_sigma: 0.15 / 25.0 });
+    assert_eq!(outcome.doubted, 0);
+    // So few would hold by chance in 1 of 100 studies, if 95 % do.
     assert!(outcome.all >= 60 && outcome.held as f64 >= 0.88 * outcome.all as f64, "{} of {}", outcome.held, outcome.all);
 }
 
-/// A board on a screen, which is as flat as a screen is and printed by its pixels.
+/// A webcam whose focus or shutter is none of a still camera: leaving photographs out moves it by ten times what its covariance says. Its intervals do not hold, and it is said that they are in doubt.
 #[test]
 #[cfg_attr(not(webcam), ignore = "the photographs webcam/img0.png to img13.png are absent")]
-fn distances_on_a_screen_are_in_their_intervals() {
+fn what_does_not_hold_on_a_webcam_is_in_doubt() {
     let outcome = told(&Set { folder: "webcam", corners: [10, 10], print_sigma: 0.0, flatness_sigma: 0.0 });
-    assert!(outcome.all >= 60 && outcome.held as f64 >= 0.88 * outcome.all as f64, "{} of {}", outcome.held, outcome.all);
+    assert!(outcome.all >= 60 && outcome.doubted == outcome.calibrations, "{} of {}", outcome.doubted, outcome.calibrations);
 }

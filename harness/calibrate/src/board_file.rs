@@ -114,6 +114,10 @@ mod tests {
         more.push(corner(&ControlRow::new("d", [1.0; 3]), [0.0; 3]));
         assert!(words(&more).contains("4 corners, and the board has 3: d is none of its corners"), "{}", words(&more));
         corners[0] = corner(&control[2], [0.0, 6.0, 0.0]);
-        assert!(words(&corners).contains("`c` is 6 from where the board has it, and its next corner is 20 away"), "{}", words(&corners));
+        assert!(
+            words(&corners).contains("`c` is 6.00 from where the board has it, and its next corner is 20.0 away"),
+            "{}",
+            words(&corners)
+        );
     }
 }

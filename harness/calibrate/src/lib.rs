@@ -3,6 +3,7 @@
 mod against_gross;
 mod allowed;
 mod board_file;
+mod board_measuring;
 mod board_shape;
 mod board_solver;
 mod calibration;
@@ -33,6 +34,7 @@ mod part;
 mod placed;
 mod prepared;
 mod prior;
+mod raster;
 mod reconstructed;
 mod resampled;
 pub mod rig;

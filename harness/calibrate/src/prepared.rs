@@ -59,7 +59,7 @@ pub struct Prepared {
 /// none, a scale of the board beside another scale.
 pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
     let settings = with_shape(settings)?;
-    settings.board.check(&settings)?;
+    settings.check_scale()?;
     let survey = Arc::new(Survey::new(points, &settings.board.applied(control))?);
     let against = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..settings.clone() };
     match prepared(&survey, &settings) {

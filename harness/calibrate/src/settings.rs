@@ -3,7 +3,7 @@
 use calibench_adjust::Variance;
 use calibench_model::{MeasuredDistance, ObservedStation};
 
-use crate::{BoardShape, DatumChoice, Discs, GrossErrors, Optics, StatedBoard};
+use crate::{BoardShape, CalibrationError, DatumChoice, Discs, GrossErrors, Optics, StatedBoard};
 
 /// How to calibrate.
 #[derive(Clone, Debug)]
@@ -59,6 +59,16 @@ impl Settings {
     /// The a-priori standard deviation of an image coordinate, px.
     pub fn sigma(&self) -> f64 {
         self.sigma_px.unwrap_or(USUAL_SIGMA)
+    }
+
+    /// What else says how large things are must not be stated beside the scale of a print.
+    pub(crate) fn check_scale(&self) -> Result<(), CalibrationError> {
+        let refused = |why: &'static str| Err(CalibrationError::BoardScale { why });
+        match self.board.scale {
+            Some(_) if !self.distances.is_empty() => refused("measured distances say the scale, too"),
+            Some(_) if self.stations.iter().any(|row| row.centre.is_some()) => refused("observed projection centres say the scale, too"),
+            _ => Ok(()),
+        }
     }
 
     /// Whose variance factor tests and standard deviations take: the a-priori one means something only if the user stated it.

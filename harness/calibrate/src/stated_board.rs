@@ -8,8 +8,6 @@ use calibench_model::{ControlDisc, ControlRow};
 use nalgebra::Point3;
 use thiserror::Error;
 
-use crate::{CalibrationError, Settings};
-
 /// The scale of a print: true over nominal length, a number, with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardScale {
@@ -65,18 +63,6 @@ impl StatedBoard {
             ..row.clone()
         };
         control.iter().map(row).collect::<Vec<_>>().into()
-    }
-
-    /// What else says how large things are must not be stated too.
-    pub(crate) fn check(&self, settings: &Settings) -> Result<(), CalibrationError> {
-        let refused = |why: &'static str| Err(CalibrationError::BoardScale { why });
-        match self.scale {
-            Some(_) if !settings.distances.is_empty() => refused("measured distances say the scale, too"),
-            Some(_) if settings.stations.iter().any(|row| row.centre.is_some()) => {
-                refused("observed projection centres say the scale, too")
-            }
-            _ => Ok(()),
-        }
     }
 }
 

@@ -34,7 +34,7 @@ impl Exact {
     pub const fn words(self) -> &'static str {
         match self {
             Self::Camera => "the camera (its file has no covariance)",
-            Self::Model => "the camera's model (a calibration's folder or --halves tells its error)",
+            Self::Model => "the camera's model (--halves, or a calibration that left photographs out, tells its error)",
             Self::Centres => "projection centres (sigma_centre)",
             Self::Angles => "rotations of images (sigma_angles)",
             Self::ControlPoints => "coordinates of control (print_sigma, or sX,sY,sZ)",

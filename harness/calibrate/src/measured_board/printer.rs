@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::suspect::raster::{distinct, nearest};
+use crate::raster::{distinct, nearest};
 
 /// The part of whole rows and columns in the deviations in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

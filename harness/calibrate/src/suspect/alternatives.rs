@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use calibench_model::{ControlRow, PixelPoint, Points};
 
 use super::LENS;
-use super::raster::Raster;
 use super::{scale, shape};
+use crate::raster::Raster;
 use crate::{BoardShape, Calibration, GrossErrors, Optics, Settings, model};
 
 /// Other inputs in place of those given.

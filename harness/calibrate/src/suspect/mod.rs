@@ -2,7 +2,6 @@
 
 mod alternatives;
 mod frame;
-pub(crate) mod raster;
 mod scale;
 mod shape;
 

@@ -8,7 +8,7 @@ use calibench_model::reconstruction::{OrientedImage, ReconstructedCamera, TiePoi
 use calibench_model::{CornerPoint, Reconstruction};
 use nalgebra::Point3;
 
-use super::{LARGEST, ReconstructionFile, colmap_rigs, lens, oriented};
+use super::{LARGEST, ReconstructionFile, colmap_rigs, lens, oriented, place, text_of};
 use crate::colmap_images::{self, Image, head_in_bytes, in_text, lines_with_points, of_image};
 use crate::formats::{colmap, colmap_bin};
 use crate::little_endian::Bytes;
@@ -26,12 +26,6 @@ pub(super) fn folder(path: &Path) -> Option<PathBuf> {
     let is_part = path.file_stem().and_then(|stem| stem.to_str()).is_some_and(|stem| PARTS.contains(&stem));
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     (is_part && matches!(ending, "bin" | "txt")).then(|| path.parent().map_or_else(PathBuf::new, Path::to_owned))
-}
-
-/// Where a part of a model is, and whether as bytes.
-pub(super) fn place(folder: &Path, name: &str) -> Option<(PathBuf, bool)> {
-    let paths = [(format!("{name}.bin"), true), (format!("{name}.txt"), false)];
-    paths.iter().map(|(file, is_binary)| (folder.join(file), *is_binary)).find(|(path, _)| path.is_file())
 }
 
 /// A part of a model, as bytes if it is there so, as COLMAP itself prefers.
@@ -155,10 +149,6 @@ fn points(bytes: &[u8], is_binary: bool) -> Result<PlacedPoints, CameraFileError
         take(id, position).map_err(at)?;
     }
     Ok((points, places))
-}
-
-pub(super) fn text_of(bytes: &[u8]) -> Result<&str, CameraFileError> {
-    std::str::from_utf8(bytes).map_err(|_| CameraFileError::new("expected text in UTF-8, found other bytes"))
 }
 
 /// An image point, from the corner of the first pixel, and the number of its object point.

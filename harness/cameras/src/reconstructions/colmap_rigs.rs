@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::LARGEST;
-use super::colmap::{place, text_of};
+use super::{LARGEST, place, text_of};
 use crate::little_endian::Bytes;
 use crate::number::shortened;
 use crate::{CameraFileError, source};

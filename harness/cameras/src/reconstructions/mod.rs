@@ -8,7 +8,7 @@ mod colmap_written;
 mod lens;
 mod openmvg;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calibench_model::Reconstruction;
 use calibench_model::camera::ImageSize;
@@ -96,4 +96,14 @@ fn oriented(pose: &named_camera::Pose) -> Pose {
 fn within(what: &str, index: usize, count: usize) -> Result<usize, CameraFileError> {
     let wrong = || CameraFileError::new(format!("{what} {index} is not there; expected 0 to {}", count.saturating_sub(1)));
     if index < count { Ok(index) } else { Err(wrong()) }
+}
+
+/// Where a part of a model of COLMAP is, and whether as bytes.
+fn place(folder: &Path, name: &str) -> Option<(PathBuf, bool)> {
+    let paths = [(format!("{name}.bin"), true), (format!("{name}.txt"), false)];
+    paths.iter().map(|(file, is_binary)| (folder.join(file), *is_binary)).find(|(path, _)| path.is_file())
+}
+
+fn text_of(bytes: &[u8]) -> Result<&str, CameraFileError> {
+    std::str::from_utf8(bytes).map_err(|_| CameraFileError::new("expected text in UTF-8, found other bytes"))
 }

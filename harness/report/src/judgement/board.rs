@@ -2,7 +2,7 @@
 
 use calibench_records::judgement::{BoardShare, Cell, FreedCorners};
 
-use super::verdict::{chance, interval};
+use super::words::{chance, interval, listed};
 use crate::plain;
 
 /// What comes before all else where the board decides, or the file that was taken for it does not fit.
@@ -52,7 +52,7 @@ pub(super) fn share(share: &BoardShare, cell: &Cell) -> Option<String> {
         .filter_map(|(px, what)| Some(format!("{} px separate the middle one of {what} from the best", plain(px?))))
         .collect();
     let rest = format!("{} px are the rest", plain(freed.holdout.value));
-    text.push_str(&format!(". Beside it {}.", super::verdict::listed(&parts.into_iter().chain([rest]).collect::<Vec<_>>())));
+    text.push_str(&format!(". Beside it {}.", listed(&parts.into_iter().chain([rest]).collect::<Vec<_>>())));
     if let Some(nominal) = &share.nominal {
         text.push_str(&format!(
             " Its corners are those of the file, taken as exact; with nominal ones it would be {} ({}).",

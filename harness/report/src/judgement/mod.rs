@@ -5,6 +5,7 @@ mod figures;
 mod html;
 mod tables;
 mod verdict;
+mod words;
 
 use calibench_records::judgement::{Summary, Trusted};
 

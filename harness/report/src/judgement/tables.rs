@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calibench_model::escape::{code, markdown};
 use calibench_records::judgement::{COMPARABLE, Cell, Summary, Trusted};
 
-use super::verdict::listed;
+use super::words::listed;
 use crate::markdown::{MarkdownTable, fixed};
 use crate::plain;
 

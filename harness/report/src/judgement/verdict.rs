@@ -6,6 +6,7 @@ use calibench_records::judgement::{
 };
 
 use super::board;
+use super::words::{chance, interval, listed};
 use crate::markdown::fixed;
 use crate::plain;
 
@@ -65,12 +66,6 @@ pub fn in_use(found: &InUse) -> String {
     )
 }
 
-/// A figure with its interval.
-pub(super) fn interval(estimate: &Estimate) -> String {
-    let (low, high) = estimate.interval;
-    format!("{} px RMS (95 % over views {} to {})", plain(estimate.value), plain(low), plain(high))
-}
-
 /// Corners that some operator lost decide what the others are compared on: what is hard to measure is hard for all.
 fn compared_on(summary: &Summary) -> Option<String> {
     let compared = || summary.methods.iter().filter(|method| summary.is_compared(&method.method));
@@ -85,18 +80,6 @@ fn compared_on(summary: &Summary) -> Option<String> {
         summary.common,
         listed(&lost)
     ))
-}
-
-pub(super) fn chance(p: f64) -> String {
-    if p < 0.001 { "p < 0.001".into() } else { format!("p = {p:.3}") }
-}
-
-pub(super) fn listed(names: &[String]) -> String {
-    match names {
-        [] => "none".into(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
 }
 
 fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Option<Estimate>)) -> String {

@@ -55,8 +55,11 @@ pub fn maps(task: &Task, budget: &Budget, maps: &[Map]) -> Canvas {
     };
     let (width, height) = maps.iter().map(&extent).fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)));
     let (width, height) = (width as u32, height as u32);
+    let mut seen: Vec<Source> = maps.iter().flat_map(|map| &map.cells).flatten().map(|cell| cell.largest).collect();
+    seen.sort_unstable();
+    seen.dedup();
     let rows = maps.len().max(1) as u32;
-    let legends = TOP + 60 + (8 + Source::ALL.len() as u32) * STEP as u32;
+    let legends = TOP + 60 + (8 + seen.len() as u32) * STEP as u32;
     let mut canvas = Canvas::new(LEFT + 2 * width + GAP.0 + RIGHT, (TOP + rows * (height + GAP.1)).max(legends));
     let halves: Vec<f64> = maps.iter().flat_map(|map| &map.cells).flatten().map(|cell| cell.half).collect();
     let unit = budget.components.first().and_then(|component| unit_of(task, component)).unwrap_or("object units");
@@ -71,9 +74,6 @@ pub fn maps(task: &Task, budget: &Budget, maps: &[Map]) -> Canvas {
     };
     let levels = scale.levels();
     let band = |half: f64| shade(DARKEST * levels.iter().filter(|level| **level <= half).count() as f64 / levels.len().max(1) as f64);
-    let mut seen: Vec<Source> = maps.iter().flat_map(|map| &map.cells).flatten().map(|cell| cell.largest).collect();
-    seen.sort_unstable();
-    seen.dedup();
     for (row, map) in (0..).zip(maps) {
         let top = TOP + row * (height + GAP.1);
         let panel = |column: u32| Panel { map, corner: ((LEFT + column * (width + GAP.0)) as i32, top as i32), extent: extent(map) };

@@ -7,18 +7,18 @@ const SAME: f64 = 1e-6;
 
 /// A raster, every place of which is a control point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Raster {
-    pub(super) columns: usize,
-    pub(super) rows: usize,
+pub(crate) struct Raster {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
     /// X of the columns and Y of the rows, object units, ascending.
-    pub(super) at: [Vec<f64>; 2],
+    pub(crate) at: [Vec<f64>; 2],
     /// The column and the row of each control point.
-    pub(super) places: Vec<[usize; 2]>,
+    pub(crate) places: Vec<[usize; 2]>,
 }
 
 impl Raster {
     /// That of control in a plane of constant Z; `None` where it is none.
-    pub(super) fn of(control: &[ControlRow]) -> Option<Self> {
+    pub(crate) fn of(control: &[ControlRow]) -> Option<Self> {
         let at = [0, 1].map(|axis| distinct(control.iter().map(|row| row.position[axis]).collect()));
         let (columns, rows) = (at[0].len(), at[1].len());
         let flat = control.first().is_some_and(|first| control.iter().all(|row| row.position[2] == first.position[2]));
@@ -33,7 +33,7 @@ impl Raster {
     }
 
     /// The control if its points, in their order, fill as many rows as there are columns; `None` of a square raster and of uneven steps.
-    pub(super) fn exchanged(&self, control: &[ControlRow]) -> Option<Vec<ControlRow>> {
+    pub(crate) fn exchanged(&self, control: &[ControlRow]) -> Option<Vec<ControlRow>> {
         let steps = [0, 1].map(|axis| even(&self.at[axis]));
         let [Some(dx), Some(dy)] = steps else { return None };
         if self.columns == self.rows {
@@ -51,7 +51,7 @@ impl Raster {
     }
 
     /// The control with other columns and rows.
-    pub(super) fn with(&self, at: &[Vec<f64>; 2], control: &[ControlRow]) -> Vec<ControlRow> {
+    pub(crate) fn with(&self, at: &[Vec<f64>; 2], control: &[ControlRow]) -> Vec<ControlRow> {
         let moved = |(row, place): (&ControlRow, &[usize; 2])| {
             let position = [at[0][place[0]], at[1][place[1]], row.position[2]];
             ControlRow { position, ..row.clone() }
