@@ -46,7 +46,7 @@ pub struct Repeats {
 ///
 /// # Errors
 /// In words: too few images, or halves that do not determine the board.
-pub(super) fn repeats(
+pub(crate) fn repeats(
     network: &Network,
     options: &Options,
     (board, nominal): (&Board, &[Point3<f64>]),

@@ -10,9 +10,9 @@ use calibench_model::camera::{CameraModel, Ray};
 use calibench_model::{ControlRow, PixelPoint, Points};
 
 use crate::placed::is_outside;
+use crate::raster::Raster;
 use crate::{Calibration, CalibrationError, Settings, prepare};
 use alternatives::Alternative;
-use raster::Raster;
 
 /// The residuals of what explains an input, as a share of those without it, at most.
 const EXPLAINS: f64 = 0.5;

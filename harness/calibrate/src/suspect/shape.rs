@@ -6,7 +6,7 @@ use calibench_diagnostics::plain;
 use calibench_model::{ControlRow, Points, upper_median};
 use nalgebra::Point3;
 
-use super::raster::Raster;
+use crate::raster::Raster;
 use crate::{BoardShape, GrossErrors, Settings, prepare};
 
 /// A share by which steps must differ from what is stated to be others.
