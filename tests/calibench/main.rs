@@ -62,7 +62,6 @@ mod rigs;
 mod schema;
 mod sets;
 mod several;
-mod splines;
 mod standard;
 mod store;
 mod sweeps;

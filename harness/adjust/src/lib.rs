@@ -21,7 +21,6 @@ mod quality;
 mod rig;
 mod solution;
 mod solve;
-mod splined;
 mod state;
 mod undetermined;
 
@@ -38,7 +37,6 @@ pub use quality::{
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
 pub use solution::{Options, Solution, adjust, adjust_on};
-pub use splined::{KnotPrior, SplinedNetwork, SplinedPlace, SplinedQuality, SplinedSolution, adjust_splined};
 pub use state::Reached;
 pub use undetermined::{FarPoints, far_points};
 

@@ -43,7 +43,6 @@ mod search;
 mod sets;
 mod settings;
 mod shape;
-pub mod splined;
 mod stages;
 mod start;
 mod stated_board;

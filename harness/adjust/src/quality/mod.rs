@@ -12,7 +12,6 @@ mod significance;
 mod snooping;
 
 pub use covariance::{Correlation, Covariances, Variance};
-pub(crate) use frame_uncertainty::by_turn;
 pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty, frame_weight};
 pub use image_information::image_information;
 pub use lengths::Length;

@@ -33,7 +33,6 @@ mod ray;
 mod reframe;
 pub mod six_prism_fisheye;
 pub mod splined;
-mod splined_image;
 pub mod tool_conventions;
 mod wide_angle;
 mod without_ray;
@@ -69,7 +68,6 @@ pub use ray::Ray;
 pub use reframe::{Reframe, Resampling, Turn};
 pub use six_prism_fisheye::SixPrismFisheye;
 pub use splined::Splined;
-pub use splined_image::SplinedImage;
 pub use without_ray::without_ray;
 
 /// Columns and rows of a camera's images.

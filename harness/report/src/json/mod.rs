@@ -17,7 +17,6 @@ mod next;
 mod rig;
 mod rig_stands;
 mod schema;
-mod splined;
 mod task;
 mod text;
 
@@ -39,7 +38,6 @@ pub use measurement::{MeasurementAnswer, MeasurementCounts};
 pub use rig::RigAnswer;
 pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
-pub use splined::SplinedAnswer;
 pub use task::TaskAnswer;
 
 /// What a command answers.
