@@ -36,9 +36,8 @@ pub use quality::{
     scale_of, snoop,
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
-pub use solution::{Options, Solution, adjust, adjust_on};
-pub use state::Reached;
-pub use undetermined::{FarPoints, far_points};
+pub use solution::{Options, Solution, adjust};
+pub use undetermined::far_points;
 
 /// The example of the README.
 #[cfg(doctest)]

@@ -9,7 +9,7 @@ use crate::datum::{free, hold, transformed};
 use crate::network::{Counts, Datum, Layout, Network, NetworkError};
 use crate::normal::{Loss, Scratch};
 use crate::solve::{End, Engine, Solved};
-use crate::state::{Reached, State};
+use crate::state::State;
 use crate::undetermined::{counted, directions};
 
 /// A pivot below which the normal equations are looked at more closely.
@@ -63,14 +63,6 @@ pub struct Solution<'n> {
 /// A network that is none, start values that do not picture what was measured, unknowns that are not determined (by name), no convergence.
 pub fn adjust<'n>(network: &'n Network, options: &Options) -> Result<Solution<'n>, AdjustError> {
     adjust_from(network, options, State::of(network))
-}
-
-/// [`adjust`] from where a search for [far points](crate::far_points) stood; frames are those of the start values nevertheless.
-///
-/// # Errors
-/// As of [`adjust`].
-pub fn adjust_on<'n>(network: &'n Network, options: &Options, from: Reached) -> Result<Solution<'n>, AdjustError> {
-    adjust_from(network, options, from.0)
 }
 
 /// [`adjust`] from other start values.

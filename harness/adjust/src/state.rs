@@ -16,20 +16,6 @@ pub(crate) struct State {
     pub(crate) points: Vec<Point3<f64>>,
 }
 
-/// Where a search for far points stood in the end: values of all unknowns, with which an adjustment may go on.
-#[derive(Clone, Debug)]
-pub struct Reached(pub(crate) State);
-
-impl Reached {
-    /// The same without the object points that go, by their index.
-    #[must_use]
-    pub fn without(mut self, goes: &[bool]) -> Self {
-        let mut goes = goes.iter();
-        self.0.points.retain(|_| !goes.next().is_some_and(|goes| *goes));
-        self
-    }
-}
-
 impl State {
     /// The start values.
     pub(crate) fn of(network: &Network) -> Self {

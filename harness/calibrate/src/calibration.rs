@@ -3,8 +3,7 @@
 use std::sync::OnceLock;
 
 use calibench_adjust::{
-    Covariances, Found, Network, Options, Reliability, Significance, Solution, Status, Test, Variance, adjust, adjust_on, adjust_robustly,
-    snoop,
+    Covariances, Found, Network, Options, Reliability, Significance, Solution, Status, Test, Variance, adjust, adjust_robustly, snoop,
 };
 use calibench_model::NamedCamera;
 use calibench_model::camera::Camera;
@@ -100,12 +99,7 @@ impl Prepared {
                 let (solution, found) = snoop(&self.network, &options, snooping)?;
                 (solution, found, None)
             }
-            GrossErrors::Sought | GrossErrors::Kept => {
-                let reached = self.reached.get().cloned();
-                let solution =
-                    reached.map_or_else(|| adjust(&self.network, &options), |reached| adjust_on(&self.network, &options, reached));
-                (solution?, Vec::new(), None)
-            }
+            GrossErrors::Sought | GrossErrors::Kept => (adjust(&self.network, &options)?, Vec::new(), None),
         })
     }
 

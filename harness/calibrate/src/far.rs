@@ -1,55 +1,43 @@
 //! Points whose rays are as good as parallel.
 
-use std::sync::OnceLock;
-
-use calibench_adjust::{Datum, Network, Reached, far_points};
+use calibench_adjust::{Datum, Network, far_points};
 
 use crate::ended::ITERATIONS;
 use crate::{LeftOut, Prepared};
 
-/// Iterations after which it is looked for them first; where they run away slowly, again after twice as many.
+/// Iterations of the first round; later ones have more where points run away slowly.
 const FIRST: usize = 30;
 
 impl Prepared {
-    /// A reconstruction without the points that run off to where their rays would be parallel; `None` where there are none, or where start values were not given. The
-    /// adjustment goes on where this search ended.
+    /// A reconstruction without the points that run off to where their rays would be parallel; `None` where there are none, or where start values were not given.
     pub(crate) fn without_far_points(&self) -> Option<Self> {
         if !self.is_given {
             return None;
         }
-        let (mut left, mut reached, mut iterations, mut more): (Option<Self>, Option<Reached>, usize, usize) = (None, None, FIRST, FIRST);
+        let (mut left, mut iterations) = (None, FIRST);
         while iterations < ITERATIONS {
             let prepared = left.as_ref().unwrap_or(self);
-            let Ok(found) = far_points(&prepared.network, more, reached.take()) else { break };
-            let Some(points) = found.points else {
-                reached = Some(found.reached);
-                break;
-            };
+            let Ok(Some(points)) = far_points(&prepared.network, iterations) else { break };
             match prepared.without(&points) {
-                Some((without, goes)) => (left, reached) = (Some(without), Some(found.reached.without(&goes))),
-                None => (reached, more, iterations) = (Some(found.reached), iterations, 2 * iterations),
+                Some(without) => left = Some(without),
+                None => iterations *= 2,
             }
-        }
-        if let Some(reached) = reached {
-            // Another search of the same network would end there too.
-            let _ = left.as_ref().unwrap_or(self).reached.set(reached);
         }
         left
     }
 
-    /// The same without points of the network, and without what is seen of them, with which go; `None` if all stay. Points of distances, lengths and a minimal datum do, so that they are named if they
+    /// The same without points of the network, and without what is seen of them; `None` if all stay. Points of distances and lengths do, so that they are named if they
     /// cannot be determined.
-    fn without(&self, points: &[usize]) -> Option<(Self, Vec<bool>)> {
+    fn without(&self, points: &[usize]) -> Option<Self> {
         let is_needed = |point: usize| {
             let is_end = |ends: &[usize; 2]| ends.contains(&point);
-            let is_held = matches!(&self.network.datum, Datum::Minimal { horizontal, vertical } if horizontal.iter().chain(vertical).any(|held| *held == point));
-            is_held || self.network.distances.iter().any(|distance| is_end(&distance.points)) || self.lengths.iter().any(is_end)
+            self.network.distances.iter().any(|distance| is_end(&distance.points)) || self.lengths.iter().any(is_end)
         };
         let points: Vec<usize> = points.iter().copied().filter(|point| !is_needed(*point)).collect();
         if points.is_empty() {
             return None;
         }
-        let mut prepared = Self { reached: OnceLock::new(), ..self.clone() };
+        let mut prepared = self.clone();
         let network = &mut prepared.network;
         let mut goes = vec![false; network.points.len()];
         points.iter().for_each(|&point| goes[point] = true);
@@ -65,7 +53,7 @@ impl Prepared {
         retain(&mut network.points, &goes.iter().map(|goes| !goes).collect::<Vec<_>>());
         renumber(network, &goes, &places);
         prepared.lengths.iter_mut().flatten().for_each(|point| *point = places[*point]);
-        Some((prepared, goes))
+        Some(prepared)
     }
 }
 

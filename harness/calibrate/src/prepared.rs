@@ -1,8 +1,8 @@
 //! From points and control to a network with start values.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use calibench_adjust::{Network, Reached};
+use calibench_adjust::Network;
 use calibench_model::camera::Camera;
 use calibench_model::{ControlRow, LostRows, Points};
 
@@ -48,8 +48,6 @@ pub struct Prepared {
     pub notes: Vec<String>,
     /// Start values were given for everything, and are not to be looked for.
     pub(crate) is_given: bool,
-    /// Where the adjustment goes on, once far points were looked for.
-    pub(crate) reached: OnceLock<Reached>,
 }
 
 /// Joins points with control and finds start values for everything.
@@ -92,7 +90,6 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         far: Vec::new(),
         notes: Vec::new(),
         is_given: false,
-        reached: OnceLock::new(),
     })
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::PI;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use calibench_adjust::{Exterior, ObjectPoint, Use};
 use calibench_diagnostics::nearest;
@@ -132,7 +132,6 @@ pub fn prepare_reconstruction(
             far: Vec::new(),
             notes: Vec::new(),
             is_given: true,
-            reached: OnceLock::new(),
         },
     })
 }

@@ -8,8 +8,6 @@ use crate::{Calibration, CalibrationError, GrossErrors, Prepared};
 /// # Errors
 /// An adjustment that does not converge or whose unknowns are not determined, by name; discs without a plane; sets with unknown parameters.
 pub fn calibrate<T>(prepared: &Prepared, sets: &[Vec<String>], read: impl FnOnce(&Calibration<'_>) -> T) -> Result<T, CalibrationError> {
-    let near = prepared.without_far_points();
-    let prepared = near.as_ref().unwrap_or(prepared);
     let sought = prepared.settings.gross == GrossErrors::Sought;
     adjusted(prepared, |all| {
         let is_normal = all.as_ref().is_ok_and(|all| !all.has_gross_errors());
@@ -29,6 +27,9 @@ pub fn calibrate<T>(prepared: &Prepared, sets: &[Vec<String>], read: impl FnOnce
 
 /// What an adjustment gives, with weak priors where it needs them.
 fn adjusted<T>(prepared: &Prepared, read: impl FnOnce(Result<Calibration<'_>, CalibrationError>) -> T) -> T {
+    if let Some(near) = prepared.without_far_points() {
+        return read(near.adjust());
+    }
     match prepared.adjust() {
         Err(error) if error.is_undetermined() => match prepared.held_weakly() {
             Some(held) => read(held.adjust()),

@@ -8,28 +8,19 @@ use crate::datum::hold;
 use crate::network::{Layout, Network};
 use crate::normal::Loss;
 use crate::solve::{End, Engine};
-use crate::state::{Reached, State};
+use crate::state::State;
 
 /// A standard deviation of a distance, relative to itself, from which it is not known: on the way, and at rest, where points may be weak and are not lost.
 const UNKNOWN: [f64; 2] = [0.5, 10.0];
 
-/// What a search for far points found.
-#[derive(Clone, Debug)]
-pub struct FarPoints {
-    /// The points, by their index; `None` where the adjustment came to rest without any.
-    pub points: Option<Vec<usize>>,
-    /// Where it stood.
-    pub reached: Reached,
-}
-
-/// The points of `network` whose distance from the nearest of their images is known to half of itself or worse after `iterations`, the images being where they are then;
-/// where it comes to rest before, those that have none to ten times itself. It begins at the start values, or where another search of the same network stood.
+/// The points of `network`, by their index, whose distance from the nearest of their images is known to half of itself or worse after `iterations`, the images being
+/// where they are then; where it comes to rest before, those that have none to ten times itself, and `None` without any.
 ///
 /// Where rays are as good as parallel nothing holds a point, and no number of iterations brings it to rest.
 ///
 /// # Errors
 /// As of [`crate::adjust`]: what is no network.
-pub fn far_points(network: &Network, iterations: usize, from: Option<Reached>) -> Result<FarPoints, AdjustError> {
+pub fn far_points(network: &Network, iterations: usize) -> Result<Option<Vec<usize>>, AdjustError> {
     network.check()?;
     let held = hold(network, &network.datum)?;
     let layout = Layout::new(network, &held, &[])?;
@@ -37,9 +28,9 @@ pub fn far_points(network: &Network, iterations: usize, from: Option<Reached>) -
         return Err(AdjustError::Undetermined(Box::new(defect)));
     }
     let engine = Engine::new(network, layout, Loss::Squares);
-    let end = engine.descend(from.map_or_else(|| State::of(network), |Reached(state)| state), iterations)?;
+    let end = engine.descend(State::of(network), iterations)?;
     let points = of_unknown_distance(&engine, &end, UNKNOWN[usize::from(end.converged)]);
-    Ok(FarPoints { points: (!end.converged || !points.is_empty()).then_some(points), reached: Reached(end.state) })
+    Ok((!end.converged || !points.is_empty()).then_some(points))
 }
 
 fn of_unknown_distance(engine: &Engine<'_>, end: &End, most: f64) -> Vec<usize> {

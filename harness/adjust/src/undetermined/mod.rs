@@ -8,4 +8,4 @@ mod names;
 
 pub(crate) use defects_by_count::counted;
 pub(crate) use directions::directions;
-pub use far::{FarPoints, far_points};
+pub use far::far_points;
