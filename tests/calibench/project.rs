@@ -12,11 +12,12 @@ pub fn root() -> PathBuf {
 const NETWORKS: &str = "galo-2011/network";
 
 /// Scenarios whose run takes long, by what their names begin with: only tests of their own copy them.
-const LONG: [&str; 11] = [
+const LONG: [&str; 12] = [
     "atlas/",
     "canon-t3/",
     "league/",
     NETWORKS,
+    "networks/",
     "operators/",
     "sweeps/",
     "targets/budget",

@@ -116,13 +116,13 @@ impl Homography {
         (map[(2, 2)].abs() > 1e-12).then(|| Self(map / map[(2, 2)]))
     }
 
-    /// Before it is divided by its last coordinate.
-    pub(crate) fn image(&self, [u, v]: Point) -> Vector3<f64> {
-        self.0 * Vector3::new(u, v, 1.0)
+    /// Its elements, row by row.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = f64> {
+        self.0.transpose().data.0.into_iter().flatten()
     }
 
-    pub(crate) fn at(&self, at: Point) -> Point {
-        let image = self.image(at);
+    pub(crate) fn at(&self, [u, v]: Point) -> Point {
+        let image = self.0 * Vector3::new(u, v, 1.0);
         [image.x / image.z, image.y / image.z]
     }
 

@@ -1,12 +1,12 @@
 //! How the lens warps what is pictured at a board's points, as all of them together tell it.
 
-use calibench_model::Warp;
 use calibench_model::boards::Layout;
 use calibench_model::camera::ImageSize;
+use calibench_model::{TargetKind, Warp};
 use nalgebra::{SMatrix, SVector};
 
 use crate::Found;
-use crate::plane::{Homography, Point, minus, times};
+use crate::plane::{Homography, Point, dot, length, minus, times};
 
 /// Unknowns: the map from the board to directions, row by row, and the lens's coefficients of r^2, r^4 and r^6.
 const UNKNOWNS: usize = 12;
@@ -24,7 +24,8 @@ const OFF: f64 = 2.0;
 /// What the lens does beyond an affine map at each point that was found; `None` where they are too few or tell of no lens.
 ///
 /// A lens is fitted that images a direction (X, Y, Z) at the distance r from the middle of the image with `r / (1 + a r^2 + b r^4 + c r^6) = hypot(X, Y) / Z`, as Scaramuzza et al. 2006 have it, before a
-/// flat board in any pose: pinholes, fisheyes beyond 180 degrees, mirrors. Only what it does from point to point is taken from it.
+/// flat board in any pose: pinholes, fisheyes beyond 180 degrees, mirrors. Only what it does from point to point is taken from it. Discs get none: all operators take the centre of
+/// the ellipse that is seen, and the adjustment knows by how much that is off.
 pub fn warps(layout: &Layout, found: &Found, size: ImageSize) -> Vec<Option<Warp>> {
     let none = || vec![None; found.points.len()];
     let middle = [0.5 * (f64::from(size.width) - 1.0), 0.5 * (f64::from(size.height) - 1.0)];
@@ -32,7 +33,8 @@ pub fn warps(layout: &Layout, found: &Found, size: ImageSize) -> Vec<Option<Warp
     let places: Vec<Point> = found.points.iter().map(|point| layout.points[point.index].at).collect();
     let positions: Vec<Point> =
         found.points.iter().map(|point| times(minus([point.position.x, point.position.y], middle), 1.0 / scale)).collect();
-    let (Some(board), true) = (Board::of(&places), places.len() >= LEAST) else { return none() };
+    let is_disc = layout.points.iter().any(|point| point.kind == TargetKind::Disc);
+    let (Some(board), true) = (Board::of(&places), places.len() >= LEAST && !is_disc) else { return none() };
     let rows: Vec<(Point, Point)> = places.iter().map(|at| board.of_place(*at)).zip(positions).collect();
     let Some(view) = View::fitted(&rows, scale) else { return none() };
     let step = STEP * board.spacing;
@@ -63,7 +65,7 @@ impl Board {
     }
 }
 
-/// A board before a lens: distances in the image are in units of half its diagonal.
+/// A board before a lens: distances in the image are in units of half its diagonal, and are negative against the direction's side of the middle.
 struct View {
     unknowns: SVector<f64, UNKNOWNS>,
 }
@@ -77,16 +79,8 @@ struct Residuals {
 impl View {
     /// `scale`: px to a unit of the image.
     fn fitted(rows: &[(Point, Point)], scale: f64) -> Option<Self> {
-        let begin = Homography::fitted(rows)?;
-        let mut unknowns = SVector::<f64, UNKNOWNS>::zeros();
-        for (column, place) in [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]].into_iter().enumerate() {
-            let image = begin.image(place);
-            let zero = begin.image([0.0, 0.0]);
-            for row in 0..3 {
-                unknowns[3 * row + column] = if column < 2 { image[row] - zero[row] } else { image[row] };
-            }
-        }
-        let mut view = Self { unknowns };
+        let pinhole = Homography::fitted(rows)?.elements().chain([0.0; 3]);
+        let mut view = Self { unknowns: SVector::from_iterator(pinhole) };
         let mut omega = view.omega(rows)?;
         let mut damping = DAMPING;
         for _ in 0..STEPS {
@@ -121,12 +115,11 @@ impl View {
     }
 
     fn residuals(&self, (at, position): &(Point, Point)) -> Option<Residuals> {
-        let ([x, y, z], r) = (self.direction(*at), position[0].hypot(position[1]));
-        let (rho, (w, slope)) = (x.hypot(y), self.lens(r));
+        let [x, y, z] = self.direction(*at);
+        let (rho, r) = (x.hypot(y), distance(*position, [x, y]));
+        let (w, slope) = self.lens(r);
         let divisor = z - rho * slope;
-        let across = (position[0] * y - position[1] * x) / rho;
-        // Against the middle as well as from it a direction lies on the same line.
-        let along = if position[0] * x + position[1] * y < 0.0 { (-r * z - rho * w) / divisor } else { (r * z - rho * w) / divisor };
+        let (across, along) = ((position[0] * y - position[1] * x) / rho, (r * z - rho * w) / divisor);
         let place = [at[0], at[1], 1.0];
         let mut derivatives = [SVector::zeros(); 2];
         let by = [
@@ -176,17 +169,69 @@ impl View {
 
     /// At a place that is seen at `position`, by differences over `step`; `scale`: px to a unit of the image.
     fn warp(&self, [u, v]: Point, position: Point, (step, scale): (f64, f64)) -> Option<Warp> {
-        let near = position[0].hypot(position[1]);
-        let at = |i: f64, j: f64| self.image([u + i * step, v + j * step], near);
-        let weighed = |all: &[(f64, f64, f64)]| {
-            all.iter().try_fold([0.0; 2], |sum, (i, j, weight)| {
-                let at = at(*i, *j)?;
-                Some([0, 1].map(|axis| sum[axis] + weight * scale * at[axis]))
-            })
-        };
-        let first = [weighed(&[(1.0, 0.0, 0.5), (-1.0, 0.0, -0.5)])?, weighed(&[(0.0, 1.0, 0.5), (0.0, -1.0, -0.5)])?];
-        let mixed = weighed(&[(1.0, 1.0, 0.25), (1.0, -1.0, -0.25), (-1.0, 1.0, -0.25), (-1.0, -1.0, 0.25)])?;
-        let twice = |i: f64, j: f64| weighed(&[(i, j, 1.0), (0.0, 0.0, -2.0), (-i, -j, 1.0)]);
-        Warp::of_derivatives(first, [twice(1.0, 0.0)?, mixed, twice(0.0, 1.0)?])
+        let [x, y, _] = self.direction([u, v]);
+        let near = distance(position, [x, y]);
+        let mut around = [[[0.0; 2]; 3]; 3];
+        for (i, column) in around.iter_mut().enumerate() {
+            for (j, there) in column.iter_mut().enumerate() {
+                let [i, j] = [i, j].map(|place| place as f64 - 1.0);
+                *there = times(self.image([u + i * step, v + j * step], near)?, scale);
+            }
+        }
+        let [[before_both, before_u, mixed], [before_v, here, after_v], [other_mixed, after_u, after_both]] = around;
+        let slope = |before: Point, after: Point| times(minus(after, before), 0.5);
+        let bend = |before: Point, after: Point| minus(minus(after, here), minus(here, before));
+        let twist = times(minus(minus(after_both, mixed), minus(other_mixed, before_both)), 0.25);
+        Warp::of_derivatives(
+            [slope(before_u, after_u), slope(before_v, after_v)],
+            [bend(before_u, after_u), twist, bend(before_v, after_v)],
+        )
+    }
+}
+
+/// How far a position is from the middle on the side of a direction, or, negative, on the other.
+fn distance(position: Point, direction: Point) -> f64 {
+    length(position).copysign(dot(position, direction))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A board in the middle of a fisheye and beyond, half of it on each side.
+    fn view() -> View {
+        View { unknowns: SVector::from([0.9, 0.1, -0.2, -0.15, 0.8, 0.1, 0.3, -0.2, 0.7, -0.6, 0.1, 0.05]) }
+    }
+
+    #[test]
+    fn residuals_vanish_where_the_lens_images_a_place_and_their_derivatives_are_differences() {
+        let view = view();
+        for at in [[0.7, 0.2], [-0.5, 0.6], [0.1, -0.9], [0.2, -0.1]] {
+            let position = view.image(at, 0.4).unwrap();
+            let found = view.residuals(&(at, position)).unwrap();
+            assert!(found.values.iter().all(|value| value.abs() < 1e-12), "{at:?}: {:?}", found.values);
+            for unknown in 0..UNKNOWNS {
+                let step = 1e-6;
+                let at_step = |step: f64| {
+                    let mut moved = view.unknowns;
+                    moved[unknown] += step;
+                    View { unknowns: moved }.residuals(&(at, position)).unwrap().values
+                };
+                let (before, after) = (at_step(-step), at_step(step));
+                for axis in 0..2 {
+                    let difference = (after[axis] - before[axis]) / (2.0 * step);
+                    let found = found.derivatives[axis][unknown];
+                    assert!((found - difference).abs() < 1e-7, "{at:?} {unknown} {axis}: {found} {difference}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn on_the_other_side_of_the_middle_a_distance_is_negative() {
+        let (view, at) = (view(), [0.7, 0.2]);
+        let position = view.image(at, 0.4).unwrap();
+        let [seen, turned] = [position, times(position, -1.0)].map(|position| view.residuals(&(at, position)).unwrap().values[1]);
+        assert!(seen.abs() < 1e-12 && turned.abs() > 0.1, "{seen} {turned}");
     }
 }

@@ -19,7 +19,7 @@ def calibrated(program, tmp_path):
     for path in (tmp_path / "board").glob("*.png"):
         path.rename(tmp_path / "photos" / path.name)
     words = ["calibrate", "photos", "--board", "9x6:25", "--model", "photogrammetric", "--pitch", "6", "-o", "camera.toml", "--length", "r1c1,r6c9", "-q"]
-    words += ["--certificate", "camera.pdf", "--by", "A. N. Other", "--place", "Delft", "--report", "report", "--json"]
+    words += ["--certificate", "camera.pdf", "--by", "Our laboratory", "--place", "Our town", "--report", "report", "--json"]
     try:
         return json.loads(program(*words))
     except AssertionError:
@@ -59,7 +59,7 @@ def test_every_figure_that_calibrate_said_is_on_it(calibrated, tmp_path):
     assert three_digits(max(over["formal_px"], over["by_images_px"])) + " px" in text
     length = calibrated["lengths"][0]
     assert (two_digits(length["sigma"]) if length["sigma"] > 0 else f"{length['length']:.6f}") in text
-    for words in ["chessboard:9x6:25", "A. N. Other", "Delft", "640 \u00d7 480 px", "taken as exact", "not evaluated", "No accredited calibration"]:
+    for words in ["chessboard:9x6:25", "Our laboratory", "Our town", "640 \u00d7 480 px", "taken as exact", "not evaluated", "No accredited calibration"]:
         assert words in text, words
     for doubt in calibrated["doubts"]:
         assert doubt.split()[0] in text and "in doubt" in reader.metadata.title
@@ -107,7 +107,7 @@ def test_the_digest_is_computed_without_calibench(calibrated, program, tmp_path)
 
 def test_what_changed_is_named(calibrated, program, tmp_path):
     code = 3 if calibrated["doubts"] else 0
-    program("certificate", "report", "-o", "again.pdf", "--by", "A. N. Other", "--place", "Delft", code=code)
+    program("certificate", "report", "-o", "again.pdf", "--by", "Our laboratory", "--place", "Our town", code=code)
     assert (tmp_path / "again.pdf").read_bytes() == (tmp_path / "camera.pdf").read_bytes()
     photo = sorted((tmp_path / "photos").iterdir())[2]
     whole = photo.read_bytes()

@@ -80,7 +80,7 @@ fn lenses_that_curve_nothing_are_told_apart() {
 #[test]
 fn detected_points_tell_it_too() {
     let mut all = Vec::new();
-    for scene in (0..30).map(|seed| Scene::of(seed, [60.0, 200.0])) {
+    for scene in (0..40).map(|seed| Scene::of(seed, [60.0, 200.0])) {
         let board = Board::Chessboard(Chessboard { columns: scene.columns, rows: scene.rows, square: 1.0 });
         let Ok(found) = detect(&scene.picture(), &board) else { continue };
         let corners = scene.corners();

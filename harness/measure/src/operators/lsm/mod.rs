@@ -42,7 +42,7 @@ const FLAT: f64 = 1e-3;
 /// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their
 /// grey-weighted centroid.
 ///
-/// Where the start tells what the lens does to the picture beyond an affine map, as the points around it on a board do, the mask is warped so; a disc's is not, whose centre is that of the ellipse that is seen, as for all operators.
+/// Where the start tells what the lens does to the picture beyond an affine map, as the points around it on a board do, the mask is warped so.
 ///
 /// The position is that of the mask's reference point; a triangle's is its centroid. Covariance: `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
@@ -130,8 +130,7 @@ impl Lsm {
 
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let is_disc = self.shape.or(start.kind) == Some(TargetKind::Disc);
-        work.warp = start.warp.filter(|warp| !is_disc && warp.farthest(half as f64) >= FLAT);
+        work.warp = start.warp.filter(|warp| warp.farthest(half as f64) >= FLAT);
         let whole = self.beside && start.affine.is_some() && self.mask(start).is_ok_and(|mask| !mask.is_open());
         let first = start::centre(image, start, half, whole)?;
         let range = work.observe(image, first, half)?;
