@@ -117,7 +117,7 @@ impl Homography {
     }
 
     /// Its elements, row by row.
-    pub(crate) fn elements(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn elements(&self) -> impl Iterator<Item = f64> + use<> {
         self.0.transpose().data.0.into_iter().flatten()
     }
 
