@@ -79,12 +79,11 @@ summary:
 nightly: build wheel
     {{calibench}} check --strict --locked --nightly
     {{calibench}} run --all
-    {{calibench}} run networks/free-many networks/rig-many
+    {{calibench}} run networks/free-many networks/rig-many networks/acceptance-photographs tasks/lengths-many
     {{calibench}} run $(cd scenarios && ls league/*.toml | sed 's|[.]toml$||')
     {{calibench}} check --strict --locked --nightly --records records
     {{calibench}} check --strict --locked --nightly --against records --records records
     CALIBENCH_NIGHTLY=1 cargo test {{everything}} --test calibench determinism
-    cargo test {{everything}} --lib ten_thousand -- --ignored
     target/python/bin/python -m pytest -q -p no:cacheprovider harness/python/tests/test_size.py
 
 # Compare all numbers with reference/baselines; exit 1 and a table if any is worse, changed without a bless, or not blessed

@@ -12,7 +12,7 @@ pub fn root() -> PathBuf {
 const NETWORKS: &str = "galo-2011/network";
 
 /// Scenarios whose run takes long, by what their names begin with: only tests of their own copy them.
-const LONG: [&str; 12] = [
+const LONG: [&str; 13] = [
     "atlas/",
     "canon-t3/",
     "league/",
@@ -23,6 +23,7 @@ const LONG: [&str; 12] = [
     "targets/budget",
     "targets/by-",
     "targets/detectors",
+    "tasks/",
     "testfields/",
     "vosselman-1988/",
 ];

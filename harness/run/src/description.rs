@@ -11,10 +11,12 @@ use calibench_records::description::{
     self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Systems, Target, Value, Views,
     operator,
 };
+use calibench_scenario::acceptance::{Classes, TestLines};
 use calibench_scenario::studies::network::CheckPlan;
 use calibench_scenario::studies::networks::Kind;
 use calibench_scenario::studies::printed::{NETWORK, SENSOR};
-use calibench_scenario::{Blocks, Networks, Printed, Scenario, Study, Subject, Sweep, ViewsSubject};
+use calibench_scenario::studies::tasks::BoardErrors;
+use calibench_scenario::{Blocks, Networks, Printed, Scenario, Study, Subject, Sweep, Tasks, ViewsSubject};
 use calibench_synth::stations::Station;
 use calibench_synth::view::View;
 
@@ -120,12 +122,16 @@ fn of_views(subject: &ViewsSubject) -> description::Study {
     match &subject.study {
         Study::Points => description::Study::Views(views),
         Study::Network(plan) => {
-            let told = Adjustment { pitch_um: plan.start.pitch_um, drawn: plan.drawn.is_some() };
+            let classes = plan.check.as_ref().and_then(|check| check.acceptance);
+            let acceptance =
+                classes.map(|Classes { horizontal, vertical, spatial }| description::Classes { horizontal, vertical, spatial });
+            let told = Adjustment { pitch_um: plan.start.pitch_um, drawn: plan.drawn.is_some(), acceptance };
             description::Study::Network(views, told)
         }
         Study::Blocks(plan) => description::Study::Blocks(views, in_blocks(subject, plan)),
         Study::Calibrators(plan) => description::Study::Calibrators(views, Systems { model: plan.model.clone(), sigma_px: plan.sigma_px }),
         Study::Networks(plan) => description::Study::Networks(views, of_networks(subject, plan)),
+        Study::Tasks(plan) => description::Study::Tasks(views, of_tasks(plan)),
         Study::Transfer { .. } => description::Study::Transfer(views),
     }
 }
@@ -137,7 +143,26 @@ fn of_networks(subject: &ViewsSubject, plan: &Networks) -> description::Networks
         Kind::Rig(_) => Vec::new(),
     };
     let mounts = plan.mounts().iter().map(|mount| mount.name.clone()).collect();
-    description::Networks { model: plan.model.clone(), sigma_px: plan.sigma_px, mounts, distances }
+    let acceptance = match &plan.kind {
+        Kind::Free { acceptance, .. } => acceptance.as_ref().map(test_lengths),
+        Kind::Rig(_) => None,
+    };
+    description::Networks { model: plan.model.clone(), sigma_px: plan.sigma_px, mounts, distances, acceptance }
+}
+
+fn of_tasks(plan: &Tasks) -> description::Tasks {
+    let BoardErrors { print, scale, flatness } = plan.board;
+    description::Tasks { model: plan.model.clone(), noise_px: plan.noise_px, count: plan.count, print, scale, flatness }
+}
+
+fn test_lengths(plan: &TestLines) -> description::TestLengths {
+    description::TestLengths {
+        count: plan.lengths().count(),
+        lines: plan.lines.len(),
+        limit: [plan.limit.constant, plan.limit.rate],
+        most: Some(plan.limit.most).filter(|most| most.is_finite()),
+        sigma: plan.sigma,
+    }
 }
 
 fn views(subject: &ViewsSubject) -> Views {

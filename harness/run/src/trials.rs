@@ -99,7 +99,7 @@ impl Plan<'_> {
             Subject::Scene(subject) => Work::Scene(Box::new(scene::Trials::new(self, subject)?)),
             Subject::Views(subject) => match &subject.study {
                 Study::Transfer { plan, board } => Work::Transfer(Box::new(Campaign::new(subject, plan, board.as_deref(), self.tools)?)),
-                Study::Points | Study::Network(_) | Study::Blocks(_) | Study::Calibrators(_) | Study::Networks(_) => {
+                Study::Points | Study::Network(_) | Study::Blocks(_) | Study::Calibrators(_) | Study::Networks(_) | Study::Tasks(_) => {
                     Work::Views(Box::new(views::Trials::new(self, subject)?))
                 }
             },

@@ -1,5 +1,6 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
+pub mod acceptance;
 pub mod camera;
 pub mod catalogue;
 mod check;
@@ -44,6 +45,7 @@ pub use studies::network::Calibration;
 pub use studies::networks::Networks;
 pub use studies::printed::{Printed, Turned};
 pub use studies::recognition::Recognition;
+pub use studies::tasks::Tasks;
 pub use studies::transfer::Transfer;
 pub use subject::{PhotographsSubject, SceneSubject, Starts, Study, Subject, ViewsSubject};
 pub use sweep::Sweep;

@@ -7,6 +7,7 @@ use calibench_model::TargetKind;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
+use super::acceptance::wire::{ClassesWire, LengthsWire};
 use super::camera::{CameraWire, LocalWire};
 use super::figure::FigureWire;
 use super::judgement::JudgementWire;
@@ -20,6 +21,7 @@ use super::studies::network::wire::{CalibrationWire, CheckWire};
 use super::studies::networks::wire::{DistanceWire, FreeNetworkWire, MountWire, RigWire};
 use super::studies::printed::wire as printed_wire;
 use super::studies::recognition::wire::{ImagesWire, RecognitionWire};
+use super::studies::tasks::wire::TasksWire;
 use super::studies::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::sweep::wire::SweepWire;
 use super::testfield::boards::wire::{
@@ -63,8 +65,10 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["calibrator"] = list(&table::<CalibratorWire>());
     root["properties"]["free_network"] = table::<FreeNetworkWire>();
     root["properties"]["distance"] = list(&table::<DistanceWire>());
+    root["properties"]["acceptance"] = json!({ "oneOf": [table::<LengthsWire>(), table::<ClassesWire>()] });
     root["properties"]["rig"] = table::<RigWire>();
     root["properties"]["mount"] = list(&table::<MountWire>());
+    root["properties"]["tasks"] = table::<TasksWire>();
     root["properties"]["recognition"] = table::<RecognitionWire>();
     root["properties"]["recognition"]["properties"]["images"] = list(&table::<ImagesWire>());
     root["properties"]["transfer"] = transfer();

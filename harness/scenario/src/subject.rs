@@ -21,6 +21,7 @@ use crate::studies::network::Calibration;
 use crate::studies::networks::Networks;
 use crate::studies::printed::Printed;
 use crate::studies::recognition::{RECOGNITION, Recognition};
+use crate::studies::tasks::Tasks;
 use crate::studies::transfer::Transfer;
 use crate::studies::{Points, StudyPlan};
 use crate::{Detector, HarrisPointing, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
@@ -163,6 +164,8 @@ pub enum Study {
     Calibrators(Box<Calibrators>),
     /// Free networks and rigs are made of them, as `calibrate` adjusts them.
     Networks(Box<Networks>),
+    /// Cameras are calibrated from them, and measure.
+    Tasks(Box<Tasks>),
     /// Nothing is measured: calibrations that are made elsewhere are applied here.
     Transfer {
         /// Which, and how.
@@ -181,6 +184,7 @@ impl Study {
             Self::Blocks(plan) => &**plan,
             Self::Calibrators(plan) => &**plan,
             Self::Networks(plan) => &**plan,
+            Self::Tasks(plan) => &**plan,
             Self::Transfer { plan, .. } => &**plan,
         }
     }
@@ -218,9 +222,12 @@ impl ViewsSubject {
         match self.study {
             // What is counted of all trials is in their figures.
             Study::Points => self.recognition.is_none(),
-            Study::Network(_) | Study::Blocks(_) | Study::Calibrators(_) | Study::Networks(_) | Study::Transfer { .. } => {
-                self.study.plan().keeps_points()
-            }
+            Study::Network(_)
+            | Study::Blocks(_)
+            | Study::Calibrators(_)
+            | Study::Networks(_)
+            | Study::Tasks(_)
+            | Study::Transfer { .. } => self.study.plan().keeps_points(),
         }
     }
 

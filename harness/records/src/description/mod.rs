@@ -11,7 +11,7 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
-pub use study::{Adjustment, Blocks, Networks, Study, Systems};
+pub use study::{Adjustment, Blocks, Classes, Networks, Study, Systems, Tasks, TestLengths};
 pub use sweep::{Axis, Cell, Sweep, Value};
 pub use views::{Role, Room, Station, Target, Views};
 
@@ -141,14 +141,21 @@ mod tests {
         })
     }
 
-    const TOLD: Adjustment = Adjustment { pitch_um: 3.9, drawn: true };
+    const TOLD: Adjustment =
+        Adjustment { pitch_um: 3.9, drawn: true, acceptance: Some(Classes { horizontal: Some(0.05), vertical: None, spatial: Some(0.1) }) };
 
     fn blocks() -> Blocks {
         Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }
     }
 
     fn networks() -> Networks {
-        Networks { model: "opencv5".into(), sigma_px: 0.1, mounts: vec!["left".into()], distances: vec![["a".into(), "b".into()]] }
+        let acceptance = Some(TestLengths { count: 35, lines: 7, limit: [0.1, 1e-5], most: Some(0.2), sigma: 0.005 });
+        let (mounts, distances) = (vec!["left".into()], vec![["a".into(), "b".into()]]);
+        Networks { model: "opencv5".into(), sigma_px: 0.1, mounts, distances, acceptance }
+    }
+
+    fn tasks() -> Tasks {
+        Tasks { model: "opencv5".into(), noise_px: 0.1, count: 20, print: 0.03, scale: 2e-4, flatness: 0.08 }
     }
 
     #[test]
@@ -159,6 +166,7 @@ mod tests {
             Study::Network(views(control), TOLD),
             Study::Blocks(views(None), blocks()),
             Study::Networks(views(None), networks()),
+            Study::Tasks(views(None), tasks()),
             Study::Transfer(views(check)),
         ];
         for study in [Study::Scene, Study::Photographs { judged: true }].into_iter().chain(of_views) {

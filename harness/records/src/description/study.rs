@@ -21,6 +21,8 @@ pub enum Study {
     Calibrators(Box<Views>, Systems),
     /// Free networks and rigs are made of them.
     Networks(Box<Views>, Networks),
+    /// Cameras are calibrated from them, and measure.
+    Tasks(Box<Views>, Tasks),
     /// Nothing is measured: calibrations that are made elsewhere are applied here.
     Transfer(Box<Views>),
     /// Photographs, of which no truth is known.
@@ -41,7 +43,8 @@ impl Study {
             | Self::Network(views, _)
             | Self::Blocks(views, _)
             | Self::Calibrators(views, _)
-            | Self::Networks(views, _) => Some(views),
+            | Self::Networks(views, _)
+            | Self::Tasks(views, _) => Some(views),
             Self::Scene | Self::Photographs { .. } | Self::Printed(_) => None,
         }
     }
@@ -55,6 +58,9 @@ pub struct Adjustment {
     pub pitch_um: f64,
     /// Image coordinates are drawn at random, no image is rendered.
     pub drawn: bool,
+    /// What check points must keep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<Classes>,
 }
 
 /// What free networks of the measured points are told.
@@ -91,6 +97,55 @@ pub struct Networks {
     pub mounts: Vec<String>,
     /// Targets between which distances are measured, by name.
     pub distances: Vec<[String; 2]>,
+    /// What lengths must keep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<TestLengths>,
+}
+
+/// What cameras that are calibrated and then measure are told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tasks {
+    /// The camera model that is calibrated.
+    pub model: String,
+    /// The standard deviation of an image coordinate, px.
+    pub noise_px: f64,
+    /// Lengths that each camera measures.
+    pub count: usize,
+    /// Standard deviation of each coordinate of each corner of the board, object units.
+    pub print: f64,
+    /// Of the scale of its print, a number.
+    pub scale: f64,
+    /// Of each of its three bends, object units.
+    pub flatness: f64,
+}
+
+/// Lengths that are measured, and what they must keep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TestLengths {
+    /// How many there are.
+    pub count: usize,
+    /// On how many lines.
+    pub lines: usize,
+    /// A, object units, and K, a number, of the limit A + K L.
+    pub limit: [f64; 2],
+    /// What the limit is at most, object units.
+    pub most: Option<f64>,
+    /// The standard uncertainty of a calibrated length, object units.
+    pub sigma: f64,
+}
+
+/// Accuracies that check points must keep, object units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Classes {
+    /// Of X and Y together.
+    pub horizontal: Option<f64>,
+    /// Of Z.
+    pub vertical: Option<f64>,
+    /// Of all three together.
+    pub spatial: Option<f64>,
 }
 
 /// A [`Study`] as files have it: by what is measured.
@@ -120,6 +175,8 @@ struct WrittenViews {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     networks: Option<Networks>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    tasks: Option<Tasks>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     room: Option<Room>,
 }
 
@@ -133,24 +190,26 @@ impl TryFrom<Subject> for Study {
             Subject::Printed(printed) => return Ok(Self::Printed(printed)),
             Subject::Views(written) => *written,
         };
-        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, networks, room } = written;
+        let WrittenViews { size, unit, extent, normal, stations, targets, adjustment, blocks, calibrators, networks, tasks, room } =
+            written;
         let views = Box::new(Views { size, unit, extent, normal, stations, targets, room });
-        match (adjustment, blocks, calibrators, networks) {
-            (Some(told), None, None, None) => Ok(Self::Network(views, told)),
-            (None, Some(told), None, None) => Ok(Self::Blocks(views, told)),
-            (None, None, Some(told), None) => Ok(Self::Calibrators(views, told)),
-            (None, None, None, Some(told)) => Ok(Self::Networks(views, told)),
+        match (adjustment, blocks, calibrators, networks, tasks) {
+            (Some(told), None, None, None, None) => Ok(Self::Network(views, told)),
+            (None, Some(told), None, None, None) => Ok(Self::Blocks(views, told)),
+            (None, None, Some(told), None, None) => Ok(Self::Calibrators(views, told)),
+            (None, None, None, Some(told), None) => Ok(Self::Networks(views, told)),
+            (None, None, None, None, Some(told)) => Ok(Self::Tasks(views, told)),
             // Where nothing is adjusted only calibrations that come from elsewhere have control and check points.
-            (None, None, None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
-            (None, None, None, None) => Ok(Self::Views(views)),
-            _ => Err("`adjustment`, `blocks`, `calibrators` and `networks`: expected one of them"),
+            (None, None, None, None, None) if views.targets.iter().any(|target| target.role.is_some()) => Ok(Self::Transfer(views)),
+            (None, None, None, None, None) => Ok(Self::Views(views)),
+            _ => Err("`adjustment`, `blocks`, `calibrators`, `networks` and `tasks`: expected one of them"),
         }
     }
 }
 
 impl From<Study> for Subject {
     fn from(study: Study) -> Self {
-        let (mut adjustment, mut blocks, mut calibrators, mut networks) = (None, None, None, None);
+        let (mut adjustment, mut blocks, mut calibrators, mut networks, mut tasks) = (None, None, None, None, None);
         let views = match study {
             Study::Scene => return Self::Scene,
             Study::Photographs { judged } => return Self::Photographs { judged },
@@ -172,6 +231,10 @@ impl From<Study> for Subject {
                 networks = Some(told);
                 views
             }
+            Study::Tasks(views, told) => {
+                tasks = Some(told);
+                views
+            }
         };
         let Views { size, unit, extent, normal, stations, targets, room } = *views;
         Self::Views(Box::new(WrittenViews {
@@ -185,6 +248,7 @@ impl From<Study> for Subject {
             blocks,
             calibrators,
             networks,
+            tasks,
             room,
         }))
     }

@@ -91,6 +91,17 @@ catalogue! {
     LengthsWithin: Network "lengths within 95 %" in Number, 3, Neither, CAMERA, "share of the lengths within their intervals of 95 %";
     IsWrongMinimum: Network "wrong minimum" in Number, 4, Less, CAMERA, "whether the truth leads to a lower minimum than the one that was found";
     IsWrongMinimumAndSilent: Network "wrong minimum and silent" in Number, 4, Less, CAMERA, "whether it does, and nothing was said against the one that was found";
+    // Lengths that calibrated cameras measure, by how.
+    TaskLength: Network "length, {}" in Object, 3, Neither, CAMERA, "a length that is measured: the mean, with root mean squares of its standard uncertainties and errors";
+    SquareOfTasks: Network "z2 of lengths, {}" in Number, 3, One, CAMERA, "mean square of errors of measured lengths in their standard uncertainties";
+    TasksWithin: Network "lengths within 95 %, {}" in Number, 3, Neither, CAMERA, "share of the measured lengths within their intervals of 95 %";
+    // What must be kept.
+    AcceptancePass: Network "acceptance/pass" in Number, 3, More, CAMERA, "whether errors keep their limits, decided with the reference's uncertainty";
+    AcceptanceFail: Network "acceptance/fail" in Number, 3, Less, CAMERA, "whether one is beyond its limit, decided likewise";
+    AcceptanceCannotTell: Network "acceptance/cannot tell" in Number, 3, Less, CAMERA, "whether neither is decided";
+    LargestLengthError: Network "largest error of a length" in Object, 4, Less, CAMERA, "the largest error of the tested lengths, by size";
+    LargestOverLimit: Network "largest error of a length over its limit" in Number, 3, Less, CAMERA, "the largest error over its limit of the tested lengths";
+    RmsOfLengthErrors: Network "rms error of lengths" in Object, 4, Less, CAMERA, "root mean square error of the tested lengths";
     // Check points.
     RmseX: Check "rmse_x" in Object, 4, Less, CAMERA, "root mean square error of check points in X";
     RmseY: Check "rmse_y" in Object, 4, Less, CAMERA, "root mean square error of check points in Y";

@@ -1,5 +1,6 @@
 //! What pages show of each study: a folder for each, with its section in `section.rs`, that of a sweep in `sweep.rs`, and the tables and pictures of both.
 
+mod accepted;
 mod blocks;
 mod calibrators;
 mod network;
@@ -11,6 +12,7 @@ mod recognition;
 mod scored;
 mod section;
 mod shown;
+mod tasks;
 mod transfer;
 
 #[cfg(test)]
@@ -33,6 +35,7 @@ pub fn of(scenario: &Description) -> &'static dyn Section {
         Study::Blocks(..) => &blocks::Blocks,
         Study::Calibrators(..) => &calibrators::Calibrators,
         Study::Networks(..) => &networks::Networks,
+        Study::Tasks(..) => &tasks::Tasks,
         Study::Transfer(_) => &transfer::Transfer,
         Study::Photographs { .. } => &photographs::Photographs,
         Study::Printed(_) => &printed::Printed,

@@ -51,7 +51,7 @@ const SCORES: &str = "[What the columns mean]";
 
 #[test]
 fn the_study_alone_says_which_section_it_is() {
-    let told = Adjustment { pitch_um: 5.0, drawn: true };
+    let told = Adjustment { pitch_um: 5.0, drawn: true, acceptance: None };
     let blocks = Blocks { pitch_um: 5.0, pairs: Vec::new(), compared: Vec::new() };
     let printed = Printed {
         sensor: "sensor".into(),
@@ -85,7 +85,7 @@ fn the_study_alone_says_which_section_it_is() {
 /// Records of which nothing could be adjusted are still shown: what was measured, and why not.
 #[test]
 fn a_study_without_figures_shows_scores() {
-    for study in [Study::Network(views(), Adjustment { pitch_um: 5.0, drawn: true }), Study::Transfer(views())] {
+    for study in [Study::Network(views(), Adjustment { pitch_um: 5.0, drawn: true, acceptance: None }), Study::Transfer(views())] {
         let section = shown(study, false);
         assert!(section.scored && section.text.contains(SCORES), "{}", section.text);
     }

@@ -137,8 +137,8 @@ fn ratio(squares: &Pooled) -> Option<Estimate> {
     root(squares, LEVEL).map(|(value, interval)| Estimate { value, interval })
 }
 
-/// A share in %, with the interval of Wilson (1927): it takes points as independent of each other.
-fn share(count: u64, of: u64) -> Option<Estimate> {
+/// A share in %, with the interval of Wilson (1927): it takes what is counted as independent of each other. `None` of nothing.
+pub fn share(count: u64, of: u64) -> Option<Estimate> {
     if of == 0 {
         return None;
     }

@@ -11,6 +11,7 @@ use calibench_records::figures::{FigureName, Group, Units};
 use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::{Figure, MethodInfo, Outcome, PointResult, Trial};
+use calibench_records::statistics::running::Running;
 use calibench_records::stored::{Table, open};
 use tempfile::TempDir;
 
@@ -194,6 +195,13 @@ impl Family {
 /// The first line of a page that begins so.
 pub fn line<'a>(page: &'a str, start: &str) -> &'a str {
     page.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("no line begins with {start}\n{page}"))
+}
+
+/// What values of trials have in common.
+pub fn running(values: &[f64]) -> Running {
+    let mut running = Running::default();
+    values.iter().for_each(|value| running.add(*value));
+    running
 }
 
 /// The first row of any table that begins with these cells.

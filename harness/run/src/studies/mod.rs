@@ -1,5 +1,6 @@
 //! What a run makes of what a scenario shows: a folder for each study, with its figures in `figures.rs` where they are many.
 
+mod accepted;
 mod adjust;
 pub mod blocks;
 pub mod calibrators;
@@ -7,6 +8,8 @@ pub mod network;
 pub mod networks;
 pub mod printed;
 pub mod recognition;
+pub mod tasks;
+mod told;
 pub mod transfer;
 
 /// The worked example of CONTRIBUTING, linked from `examples/`.
@@ -26,6 +29,7 @@ pub(crate) fn of<'a>(study: &'a Study, tools: Tools<'a>) -> Option<Box<dyn Adjus
         Study::Blocks(plan) => Some(Box::new(&**plan)),
         Study::Calibrators(plan) => Some(Box::new(calibrators::Study { plan, tools })),
         Study::Networks(plan) => Some(Box::new(&**plan)),
+        Study::Tasks(plan) => Some(Box::new(&**plan)),
         Study::Points | Study::Transfer { .. } => None,
     }
 }

@@ -1,5 +1,6 @@
 //! Runs of a small wall whose figures have closed forms.
 
+mod accepted;
 mod blocks;
 mod boards;
 mod drawn;
@@ -7,10 +8,12 @@ mod example;
 mod kinds;
 mod network;
 mod networks;
+mod own;
 mod recordings;
 mod reuse;
 mod second_solver;
 mod store;
+mod tasks;
 mod truth;
 mod views;
 

@@ -1,45 +1,19 @@
 //! Free networks and rigs of the project's own scenarios: what they say of themselves, held against the truth.
 
-use std::path::{Path, PathBuf};
-
-use calibench_measure::Registry;
 use calibench_records::figures::Quantity;
-use calibench_records::results::{Figure, Trial, find};
-use calibench_scenario::{Scenario, parse};
+use calibench_scenario::Scenario;
 
+use super::own::{self, figures, there, value};
 use super::trials;
 
-/// `scenarios/networks/NAME.toml`, changed.
 fn network(name: &str, changes: &[(&str, &str)]) -> Scenario {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/networks").join(format!("{name}.toml"));
-    let mut text = std::fs::read_to_string(&path).unwrap();
-    for (old, new) in changes {
-        assert!(text.contains(old), "{old}");
-        text = text.replacen(old, new, 1);
-    }
-    parse(&format!("networks/{name}"), &path.display().to_string(), &text, &Registry::builtin()).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn figures(trial: &Trial) -> &[Figure] {
-    trial.calibrations[0].outcome.as_ref().unwrap_or_else(|why| panic!("trial {}: {why}", trial.number))
-}
-
-fn value(trial: &Trial, quantity: Quantity) -> f64 {
-    find(figures(trial), quantity).unwrap_or_else(|| panic!("{quantity:?}: {:?}", figures(trial))).value
-}
-
-fn there() -> bool {
-    let there = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/networks").is_dir();
-    if !there {
-        println!("scenarios/networks are not there");
-    }
-    there
+    own::scenario(&format!("networks/{name}"), changes)
 }
 
 /// Errors are within six of their standard deviations, residuals those of the noise, and no minimum is wrong.
 #[test]
 fn what_networks_say_of_themselves_is_so() {
-    if !there() {
+    if !there("networks") {
         return;
     }
     for name in ["free", "rig"] {
@@ -60,7 +34,7 @@ fn what_networks_say_of_themselves_is_so() {
 /// A standard deviation that is told half as large makes twice the residuals of it; the covariance follows the residuals and stays true.
 #[test]
 fn a_precision_that_is_wrong_shows_in_the_cost_alone() {
-    if !there() {
+    if !there("networks") {
         return;
     }
     let told = |changes: &[(&str, &str)]| trials(&network("rig", &[&[("trials = 10", "trials = 1")], changes].concat()), 1).swap_remove(0);
@@ -73,7 +47,7 @@ fn a_precision_that_is_wrong_shows_in_the_cost_alone() {
 /// A model that the true camera has no parameters of has no truth.
 #[test]
 fn a_camera_that_is_none_of_the_model_is_said() {
-    if !there() {
+    if !there("networks") {
         return;
     }
     let scenario = network("rig", &[("trials = 10", "trials = 1"), ("opencv5", "opencv4")]);

@@ -11,13 +11,14 @@ mod points;
 pub mod printed;
 pub mod recognition;
 mod seen;
+pub mod tasks;
 pub mod transfer;
 
 /// The worked example of CONTRIBUTING, linked from `examples/`.
 #[cfg(test)]
 mod example;
 
-pub(crate) use named::{filled, matched, places};
+pub(crate) use named::{check_model, filled, matched, places};
 pub use plan::StudyPlan;
 pub use points::Points;
 pub(crate) use seen::Seen;

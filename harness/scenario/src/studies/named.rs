@@ -1,5 +1,6 @@
-//! Stations, targets and methods that tables name.
+//! Stations, targets, methods and camera models that tables name.
 
+use calibench_calibrate::MODELS;
 use calibench_diagnostics::Problem;
 use glob::Pattern;
 use toml::Spanned;
@@ -49,4 +50,13 @@ pub(crate) fn matched(what: &str, patterns: &[Spanned<String>], known: &[&str], 
     found.sort_unstable();
     found.dedup();
     found
+}
+
+/// A name that is that of no camera model is a problem.
+pub(crate) fn check_model(model: &Spanned<String>, problems: &mut Vec<Problem>) {
+    let name = model.get_ref();
+    if !MODELS.contains(&name.as_str()) {
+        let message = format!("`{name}` is no camera model: expected one of {}", MODELS.join(", "));
+        problems.push(Problem::new(model.span(), message).nearest(name, MODELS));
+    }
 }

@@ -226,10 +226,3 @@ fn hold_95(calibrations: u64) {
 fn intervals_hold_the_truth_in_95_of_100() {
     hold_95(300);
 }
-
-/// `just nightly` runs it.
-#[test]
-#[ignore = "minutes: 10,000 calibrations of 20 tasks each; `just nightly` runs it"]
-fn intervals_of_ten_thousand_calibrations_hold_the_truth() {
-    hold_95(10_000);
-}

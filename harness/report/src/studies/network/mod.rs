@@ -8,9 +8,9 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 
-use super::scored;
 use super::section::Section;
 use super::shown::{OnPage, Shown};
+use super::{accepted, scored};
 use crate::LoadError;
 use crate::load::{Loaded, LoadedSweep};
 
@@ -23,6 +23,12 @@ impl Section for Network {
     }
 
     fn of_sweep(&self, loaded: &LoadedSweep, on: OnPage<'_>) -> Result<Shown, LoadError> {
-        sweep::section(loaded, on)?.map_or_else(|| scored::sweep(loaded, on), |shown| Ok(shown.into()))
+        let shown = sweep::section(loaded, on)?.map_or_else(|| scored::sweep(loaded, on), |shown| Ok(shown.into()))?;
+        let Some((views, told)) = loaded.scenario.adjusted() else { return Ok(shown) };
+        let Some(classes) = told.acceptance else { return Ok(shown) };
+        let stem = format!("{}-acceptance", on.stem);
+        let kept = accepted::sweep(loaded, OnPage { stem: &stem, ..on }, &accepted::of_classes(classes, &views.unit))?;
+        let Some(kept) = kept else { return Ok(shown) };
+        Ok(Shown { text: kept.text + &shown.text, pictures: kept.pictures.into_iter().chain(shown.pictures).collect(), ..shown })
     }
 }

@@ -5,6 +5,7 @@ use calibench_records::figures::Quantity;
 use super::{pictures, tables};
 use crate::canvas::{Canvas, Pictures};
 use crate::load::Loaded;
+use crate::studies::accepted;
 use crate::studies::shown::OnPage;
 
 /// The text of a calibrated scenario and its pictures; `None` without adjustments.
@@ -14,6 +15,9 @@ pub fn section(loaded: &Loaded, OnPage { stem, illustrated, .. }: OnPage<'_>) ->
     let mut text = tables::methods(found);
     if found.sets.len() > 1 {
         text.push_str(&tables::sets(found));
+    }
+    if let (Some(classes), Some(table)) = (told.acceptance, accepted::table(found)) {
+        text.push_str(&format!("{}\n\n{table}", accepted::of_classes(classes, &views.unit)));
     }
     let mut drawn: Pictures = Vec::new();
     // Networks that are alike need no picture of their own; what real operators leave behind does.

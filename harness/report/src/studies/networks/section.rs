@@ -5,19 +5,32 @@ use std::fmt::Write;
 use calibench_records::description::{self, Study};
 use calibench_records::figures::{FigureName, Quantity};
 
-use crate::load::Loaded;
+use crate::LoadError;
 use crate::load::adjustments::{Summaries, Summary};
+use crate::load::{Loaded, LoadedSweep};
 use crate::markdown::{MarkdownTable, fixed, with_half};
 use crate::studies::section::Section;
 use crate::studies::shown::{OnPage, Shown};
+use crate::studies::{accepted, scored};
 
 /// Networks that are adjusted in every trial as `calibrate` adjusts them.
 pub struct Networks;
 
 impl Section for Networks {
     fn of(&self, loaded: &Loaded, _: OnPage<'_>) -> Shown {
-        let (Some(found), Study::Networks(_, told)) = (&loaded.calibrations, &loaded.scenario.study) else { return Shown::default() };
-        Shown { text: text(found, told), answer: answer(found, told), ..Shown::default() }
+        let (Some(found), Study::Networks(views, told)) = (&loaded.calibrations, &loaded.scenario.study) else { return Shown::default() };
+        let mut text = text(found, told);
+        if let (Some(lengths), Some(table)) = (&told.acceptance, accepted::table(found)) {
+            let _ = writeln!(text, "{}\n\n{table}", accepted::of_lengths(lengths, &views.unit));
+        }
+        let answer = accepted::answer(found).or_else(|| answer(found, told));
+        Shown { text, answer, ..Shown::default() }
+    }
+
+    fn of_sweep(&self, loaded: &LoadedSweep, on: OnPage<'_>) -> Result<Shown, LoadError> {
+        let Study::Networks(views, told) = &loaded.scenario.study else { return scored::sweep(loaded, on) };
+        let introduction = told.acceptance.as_ref().map(|lengths| accepted::of_lengths(lengths, &views.unit)).unwrap_or_default();
+        accepted::sweep(loaded, on, &format!("{} {introduction}", kind(told)))?.map_or_else(|| scored::sweep(loaded, on), Ok)
     }
 }
 

@@ -2,17 +2,10 @@
 
 use calibench_records::description::Networks;
 use calibench_records::figures::{FigureName, Quantity};
-use calibench_records::statistics::running::Running;
 
 use super::section::text;
 use crate::load::adjustments::{Summaries, Summary};
-use crate::tests::small::row;
-
-fn running(values: &[f64]) -> Running {
-    let mut running = Running::default();
-    values.iter().for_each(|value| running.add(*value));
-    running
-}
+use crate::tests::small::{row, running};
 
 #[test]
 fn a_row_says_whether_what_is_stated_is_so() {
@@ -26,7 +19,13 @@ fn a_row_says_whether_what_is_stated_is_so() {
     let parameter = Summary { value: running(&[900.0]), sigma: running(&[0.2, 0.2]), square: running(&[0.01, 0.03]), ..Summary::default() };
     put(Quantity::Parameter.of(&["fx"]), parameter);
     found.failed.insert(("pixel".into(), "network".into(), FigureName::from(Quantity::Redundancy).group()), (1, "no lens".into()));
-    let told = Networks { model: "opencv5".into(), sigma_px: 0.1, mounts: Vec::new(), distances: vec![["a".into(), "b".into()]] };
+    let told = Networks {
+        model: "opencv5".into(),
+        sigma_px: 0.1,
+        mounts: Vec::new(),
+        distances: vec![["a".into(), "b".into()]],
+        acceptance: None,
+    };
     let text = text(&found, &told);
     assert!(text.starts_with("Free networks of one camera (opencv5), from image points and one measured distance"), "{text}");
     let cells = row(&text, &["`pixel`", "3"]);

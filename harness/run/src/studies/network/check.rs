@@ -3,8 +3,8 @@
 use calibench_adjust::approximate::{Control, Sight, intersect};
 use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, adjust};
 use calibench_calibrate::pose_of;
-use calibench_model::Pose;
 use calibench_model::camera::Camera;
+use calibench_model::{ControlRow, Pose};
 use calibench_records::figures::Quantity;
 use calibench_records::results::Figure;
 use calibench_scenario::studies::network::CheckPlan;
@@ -13,6 +13,7 @@ use nalgebra::Point3;
 use super::adjustment::control_point;
 use super::{ImagePoint, Job, Observed};
 use crate::rmse::Rmse;
+use crate::studies::accepted;
 
 /// Rays that meet at less are parallel, rad.
 const PARALLEL: f64 = 1e-3;
@@ -87,12 +88,20 @@ fn figures(job: &Job<'_>, plan: &CheckPlan, observed: &Observed, targets: &[usiz
     let unit = job.unit.name();
     let [xy, z] = rmse(&truth);
     let [xy_survey, z_survey] = rmse(&surveyed);
-    Ok(vec![
+    let mut figures = vec![
         Figure::plain(Quantity::RmseXy, xy, unit),
         Figure::plain(Quantity::RmseZ, z, unit),
         Figure::plain(Quantity::RmseXySurvey, xy_survey, unit),
         Figure::plain(Quantity::RmseZSurvey, z_survey, unit),
         Figure::plain(Quantity::Distance, distance, unit),
         Figure::plain(Quantity::CheckPoints, count, ""),
-    ])
+    ];
+    if let Some(classes) = plan.acceptance {
+        let row = |target: usize, at: Point3<f64>| ControlRow::new(&job.field.targets[target].id, at.coords.into());
+        let sigmas = Some([job.calibration.survey_sigma; 3]);
+        let control = |&target: &usize| ControlRow { sigmas, ..row(target, observed.control[target]) };
+        let measured: Vec<ControlRow> = checked.iter().map(|&(target, at)| row(target, at)).collect();
+        figures.extend(accepted::points(classes, &plan.points.iter().map(control).collect::<Vec<_>>(), &measured));
+    }
+    Ok(figures)
 }

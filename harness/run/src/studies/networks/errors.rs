@@ -5,6 +5,11 @@ use calibench_records::results::Figure;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+/// Iterations of an adjustment from the truth at most.
+pub(super) const ITERATIONS: usize = 1000;
+/// A weighted sum of squares that is larger by no more than this share is that of the same minimum.
+const SAME: f64 = 1e-4;
+
 /// The probability of a region.
 const REGION: f64 = 0.95;
 
@@ -22,7 +27,7 @@ impl Whole {
     /// Cost, redundancy, whether it is doubted, whether it ended in a wrong minimum.
     pub(super) fn figures(&self) -> Vec<Figure> {
         let is = |yes: bool| f64::from(u8::from(yes));
-        let is_wrong = self.from_truth.map(|least| super::told::is_wrong(self.cost, least));
+        let is_wrong = self.from_truth.map(|least| is_wrong(self.cost, least));
         let mut figures = vec![
             Figure::plain(Quantity::CostOverRedundancy, self.cost / self.redundancy as f64, ""),
             Figure::plain(Quantity::Redundancy, self.redundancy as f64, ""),
@@ -33,6 +38,11 @@ impl Whole {
         figures.extend(is_wrong.map(|wrong| Figure::plain(Quantity::IsWrongMinimumAndSilent, is(wrong && !self.in_doubt), "")));
         figures
     }
+}
+
+/// Whether the truth leads to a lower minimum than the one that was found.
+pub(super) fn is_wrong(found: f64, from_truth: f64) -> bool {
+    found > from_truth * (1.0 + SAME)
 }
 
 /// The square of all errors together in their covariance, over their number, and whether it is in the region of 95 %; none where the covariance is none.

@@ -1,29 +1,47 @@
 //! A free network of a trial.
 
 use calibench_adjust::{Options, adjust};
-use calibench_calibrate::{Calibration, calibrate, prepare_free};
-use calibench_model::MeasuredDistance;
+use calibench_calibrate::{AdjustedLength, Calibration, calibrate, prepare_free};
+use calibench_model::{MeasuredDistance, TestLength};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::figures::Quantity;
 use calibench_records::results::Figure;
+use calibench_scenario::acceptance::TestLines;
 use calibench_scenario::studies::networks::Bar;
 use nalgebra::DVector;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::errors::{Whole, lengths, together};
-use super::told::{ITERATIONS, Trial};
+use super::errors::{ITERATIONS, Whole, lengths, together};
+use crate::studies::accepted;
+use crate::studies::told::Trial;
 
 /// The figures of a network from image points and distances alone.
 ///
 /// # Errors
 /// Why it cannot be adjusted, in words.
-pub(super) fn figures(trial: &Trial<'_>, distances: &[Bar], asked: &[[usize; 2]], key: Key<'_>) -> Result<Vec<Figure>, String> {
+pub(super) fn figures(
+    trial: &Trial<'_>,
+    (distances, asked, acceptance): (&[Bar], &[[usize; 2]], Option<&TestLines>),
+    key: Key<'_>,
+) -> Result<Vec<Figure>, String> {
     let names = |between: &[usize; 2]| between.map(|target| trial.subject.field.targets[target].id.clone());
     let mut settings = trial.settings(vec![trial.optics("camera", "*")?]);
     settings.distances = distances.iter().filter_map(|bar| measured(trial, names(&bar.between), bar.sigma, key)).collect();
-    settings.lengths = asked.iter().map(names).collect();
+    let tested = acceptance.map(|plan| accepted::calibrated(plan, trial, key)).unwrap_or_default();
+    let is_there = |length: &&TestLength| length.targets.iter().all(|name| trial.images_of(name) > 1);
+    settings.lengths = asked.iter().map(names).chain(tested.iter().filter(is_there).map(|length| length.targets.clone())).collect();
     let prepared = prepare_free(trial.points.clone(), &[], &settings).map_err(|error| error.to_string())?;
-    calibrate(&prepared, &[], |found| of(trial, found)).map_err(|error| error.to_string())?
+    let figures = |found: &Calibration<'_>| {
+        let lengths = found.lengths().map_err(|error| error.to_string())?;
+        // Those that are looked at were asked for before those that are tested.
+        let free: Vec<AdjustedLength> = lengths.into_iter().filter(|length| length.measured.is_none()).collect();
+        let (looked_at, measured) = free.split_at(asked.len());
+        let mut figures = of(trial, found, looked_at)?;
+        let kept = acceptance.map(|plan| accepted::lengths(plan, tested.clone(), measured, &settings.distances, trial.subject.unit.name()));
+        figures.extend(kept.into_iter().flatten());
+        Ok(figures)
+    };
+    calibrate(&prepared, &[], figures).map_err(|error| error.to_string())?
 }
 
 /// A distance as it is measured in the trial of `key`.
@@ -35,7 +53,7 @@ fn measured(trial: &Trial<'_>, targets: [String; 2], sigma: f64, key: Key<'_>) -
     Some(MeasuredDistance { value: (to? - from?).norm() + sigma * error, sigma, targets })
 }
 
-fn of(trial: &Trial<'_>, found: &Calibration<'_>) -> Result<Vec<Figure>, String> {
+fn of(trial: &Trial<'_>, found: &Calibration<'_>, looked_at: &[AdjustedLength]) -> Result<Vec<Figure>, String> {
     let counts = found.solution.counts();
     let whole = Whole {
         cost: found.solution.cost(),
@@ -60,12 +78,11 @@ fn of(trial: &Trial<'_>, found: &Calibration<'_>) -> Result<Vec<Figure>, String>
             unit: parameter.unit,
         }));
     }
-    let asked = found.lengths().map_err(|error| error.to_string())?;
-    let error = |length: &calibench_calibrate::AdjustedLength| {
+    let error = |length: &AdjustedLength| {
         let [from, to] = length.targets.each_ref().map(|name| trial.target(name));
         Some((length.value - (to? - from?).norm(), length.sigma))
     };
-    let all: Vec<(f64, f64)> = asked.iter().filter(|length| length.measured.is_none()).filter_map(error).collect();
+    let all: Vec<(f64, f64)> = looked_at.iter().filter_map(error).collect();
     figures.extend(lengths(&all, whole.redundancy));
     Ok(figures)
 }

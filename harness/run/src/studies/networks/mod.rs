@@ -6,7 +6,6 @@
 mod errors;
 mod free;
 mod rig;
-mod told;
 
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, PointResult};
@@ -14,14 +13,14 @@ use calibench_scenario::ViewsSubject;
 use calibench_scenario::studies::networks::{Kind, Networks};
 
 use super::adjust::Adjust;
-use told::Trial;
+use super::told::Trial;
 
 impl Adjust for Networks {
     fn adjust(&self, subject: &ViewsSubject, points: &[PointResult], methods: &[usize], key: Key<'_>) -> Vec<Calibrated> {
         let of_method = |&method: &usize| {
-            let trial = Trial::of(self, subject, (points, method), key);
+            let trial = Trial::of((&self.model, self.sigma_px), subject, (points, method), key);
             let outcome = trial.and_then(|trial| match &self.kind {
-                Kind::Free { distances, lengths } => free::figures(&trial, distances, lengths, key),
+                Kind::Free { distances, lengths, acceptance } => free::figures(&trial, (distances, lengths, acceptance.as_ref()), key),
                 Kind::Rig(mounts) => rig::figures(&trial, mounts),
             });
             Calibrated { method, set: 0, outcome, check_failed: None }

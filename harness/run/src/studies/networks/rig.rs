@@ -8,8 +8,8 @@ use calibench_records::results::Figure;
 use calibench_scenario::studies::networks::Mount;
 use nalgebra::DVector;
 
-use super::errors::{Whole, lengths, together};
-use super::told::{ITERATIONS, Trial};
+use super::errors::{ITERATIONS, Whole, lengths, together};
+use crate::studies::told::Trial;
 
 /// The figures of a rig from image points and surveyed targets alone.
 ///

@@ -10,6 +10,7 @@ use calibench_model::camera::Photogrammetric;
 pub(crate) use read::read;
 
 use super::plan::StudyPlan;
+use crate::acceptance::Classes;
 
 /// The method whose image coordinates come from the hand alone.
 pub const POINTED: &str = "pixel";
@@ -72,7 +73,7 @@ impl StudyPlan for Calibration {
 }
 
 /// The second step, by places in the lists of stations and targets.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CheckPlan {
     /// Stations.
     pub views: Vec<usize>,
@@ -80,4 +81,6 @@ pub struct CheckPlan {
     pub control: Vec<usize>,
     /// Check points.
     pub points: Vec<usize>,
+    /// The accuracies that they must keep.
+    pub acceptance: Option<Classes>,
 }

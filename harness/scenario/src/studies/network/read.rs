@@ -7,15 +7,26 @@ use toml::Spanned;
 
 use super::wire::{self, CalibrationWire, CheckWire};
 use super::{Calibration, CheckPlan, POINTED, ParameterSet};
+use crate::acceptance::{Classes, read_classes};
 use crate::section::Section;
 use crate::studies::{Seen, places};
 
-/// Reads the table of a scenario of `views`; `methods` are those of the scenario.
-pub fn read(mut section: Section<'_>, views: &Seen<'_>, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<Calibration> {
+/// Reads the table of a scenario of `views`, and what its check points must keep; `methods` are those of the scenario.
+pub fn read(
+    mut section: Section<'_>,
+    acceptance: Option<Section<'_>>,
+    views: &Seen<'_>,
+    methods: &[Configured],
+    problems: &mut Vec<Problem>,
+) -> Option<Calibration> {
     let (span, before) = (section.span.clone(), problems.len());
     let check = section.take_table("check", "[calibration.check]", problems);
     let wire: Option<CalibrationWire> = section.read(&["check"], problems);
-    let check = check.map(|section| read_check(section, views, problems));
+    if let (Some(section), None) = (&acceptance, &check) {
+        problems.push(Problem::new(section.span.clone(), "[acceptance] without [calibration.check]: expected check points that keep it"));
+    }
+    let classes = acceptance.and_then(|section| read_classes(section, problems));
+    let check = check.map(|section| read_check(section, views, classes, problems));
     let wire = wire?;
     let Camera::Photogrammetric(truth) = *views.camera else {
         let problem = Problem::new(span, "[calibration] needs a camera of the photogrammetric model");
@@ -105,7 +116,7 @@ fn drawn_sigmas(
 /// The fewest control points of the second step: a resection takes as many.
 const LEAST_CONTROL: usize = 4;
 
-fn read_check(section: Section<'_>, views: &Seen<'_>, problems: &mut Vec<Problem>) -> Option<CheckPlan> {
+fn read_check(section: Section<'_>, views: &Seen<'_>, acceptance: Option<Classes>, problems: &mut Vec<Problem>) -> Option<CheckPlan> {
     let before = problems.len();
     let wire: CheckWire = section.read(&[], problems)?;
     let stations: Vec<&str> = views.stations.iter().map(|station| station.name.as_str()).collect();
@@ -128,5 +139,5 @@ fn read_check(section: Section<'_>, views: &Seen<'_>, problems: &mut Vec<Problem
         let at = written.iter().find(|name| name.get_ref() == targets[both]).map_or(wire.control.span(), Spanned::span);
         problems.push(Problem::new(at, format!("`{}` is a control point and a check point: expected one of them", targets[both])));
     }
-    (problems.len() == before).then_some(CheckPlan { views: seen, control, points })
+    (problems.len() == before).then_some(CheckPlan { views: seen, control, points, acceptance })
 }

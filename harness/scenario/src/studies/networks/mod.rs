@@ -14,6 +14,7 @@ use calibench_synth::stations::Station;
 pub(crate) use read::{read_free, read_rig};
 
 use super::plan::StudyPlan;
+use crate::acceptance::TestLines;
 
 /// The name under which its figures stand in the records.
 pub const SET: &str = "network";
@@ -40,6 +41,8 @@ pub enum Kind {
         distances: Vec<Bar>,
         /// Lengths between targets, by their places in the field, whose errors are looked at.
         lengths: Vec<[usize; 2]>,
+        /// What its measuring must keep.
+        acceptance: Option<TestLines>,
     },
     /// Cameras that are mounted rigidly to each other, before targets that are known.
     Rig(Vec<Mount>),

@@ -1,24 +1,22 @@
 //! Reading `[free_network]` and `[rig]`.
 
-use calibench_calibrate::MODELS;
 use calibench_diagnostics::Problem;
 use calibench_measure::Configured;
 use calibench_model::Pose;
 use nalgebra::Point3;
-use toml::Spanned;
 
 use super::wire::{DistanceWire, FreeNetworkWire, MountWire, RigWire};
 use super::{Bar, Kind, Mount, Networks};
+use crate::acceptance::read_lengths;
 use crate::section::Section;
-use crate::studies::{Seen, places};
+use crate::studies::{Seen, check_model, places};
 
 /// Lengths that are looked at if the scenario does not say how many.
 const LENGTHS: usize = 10;
 
-/// Reads a free network of `views`, whose methods are `methods`.
+/// Reads a free network of `views`, whose methods are `methods`: its table, its distances, what it must keep.
 pub fn read_free(
-    section: Section<'_>,
-    listed: Vec<Section<'_>>,
+    (section, listed, acceptance): (Section<'_>, Vec<Section<'_>>, Option<Section<'_>>),
     views: &Seen<'_>,
     methods: &[Configured],
     problems: &mut Vec<Problem>,
@@ -26,6 +24,10 @@ pub fn read_free(
     let (before, span) = (problems.len(), section.span.clone());
     let targets: Vec<&str> = views.field.targets.iter().map(|target| target.id.as_str()).collect();
     let distances: Vec<Bar> = listed.into_iter().filter_map(|section| distance(section, &targets, problems)).collect();
+    let needs_scale = acceptance.as_ref().filter(|_| distances.is_empty()).map(|section| section.span.clone());
+    problems
+        .extend(needs_scale.map(|span| Problem::new(span, "[acceptance] without a [[distance]]: nothing tells the scale of its lengths")));
+    let acceptance = acceptance.and_then(|section| read_lengths(section, views.field, problems));
     let wire: FreeNetworkWire = section.read(&[], problems)?;
     check_model(&wire.model, problems);
     let count = wire.lengths.map(|count| count.0);
@@ -37,7 +39,7 @@ pub fn read_free(
         model: wire.model.into_inner(),
         sigma_px: wire.sigma_px.map_or(wire.noise_px.0, |sigma| sigma.0),
         drawn: drawn(methods, wire.noise_px.0),
-        kind: Kind::Free { lengths: lengths(count, targets.len(), &distances), distances },
+        kind: Kind::Free { lengths: lengths(count, targets.len(), &distances), distances, acceptance },
     })
 }
 
@@ -63,14 +65,6 @@ pub fn read_rig(section: Section<'_>, listed: Vec<Section<'_>>, methods: &[Confi
 
 fn drawn(methods: &[Configured], noise_px: f64) -> Vec<(String, Option<f64>)> {
     methods.iter().map(|method| (method.label.clone(), Some(noise_px))).collect()
-}
-
-fn check_model(model: &Spanned<String>, problems: &mut Vec<Problem>) {
-    let name = model.get_ref();
-    if !MODELS.contains(&name.as_str()) {
-        let message = format!("`{name}` is no camera model: expected one of {}", MODELS.join(", "));
-        problems.push(Problem::new(model.span(), message).nearest(name, MODELS));
-    }
 }
 
 fn distance(section: Section<'_>, targets: &[&str], problems: &mut Vec<Problem>) -> Option<Bar> {

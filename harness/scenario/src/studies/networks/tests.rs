@@ -58,12 +58,12 @@ fn a_free_network_is_read_with_its_distances() {
     let found = read(FREE).unwrap();
     assert_eq!((found.model.as_str(), found.sigma_px, found.is_random()), ("opencv5", 0.1, true));
     assert_eq!(found.drawn, [("pixel".to_owned(), Some(0.1))]);
-    let Kind::Free { distances, lengths } = &found.kind else { panic!("{found:?}") };
+    let Kind::Free { distances, lengths, acceptance: None } = &found.kind else { panic!("{found:?}") };
     assert_eq!(distances[..], [Bar { between: [0, 8], sigma: 0.02 }]);
     // The first half of 54 targets with the second.
     assert_eq!(lengths[..], [[0, 27], [1, 28], [2, 29]]);
     let bare = read(FREE.split("lengths").next().unwrap()).unwrap();
-    assert_eq!(bare.kind, Kind::Free { distances: Vec::new(), lengths: Vec::new() });
+    assert_eq!(bare.kind, Kind::Free { distances: Vec::new(), lengths: Vec::new(), acceptance: None });
 }
 
 #[test]
