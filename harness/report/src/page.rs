@@ -115,7 +115,7 @@ impl Page {
             return String::new();
         }
         let names: Vec<String> = self.not_run.iter().map(|name| format!("`{name}`")).collect();
-        format!("**Not run**, so that nothing is said of them here: {}. `calibench run {}` runs all.\n\n", names.join(", "), self.family)
+        format!("**Not run**, so that nothing is said of them here: {}. `calibench run {}` runs all.", names.join(", "), self.family)
     }
 
     /// The page with all that is beside it.
@@ -126,9 +126,9 @@ impl Page {
             "Made by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. Some of the methods compared here are our own, `forstner` \
              and `harris_paraboloid` among them: each gets the same images, the same starts and the same score."
         );
-        let answer = self.answers.paragraph();
+        // In one paragraph: the front page has it too.
+        let answer = [self.answers.paragraph(), self.not_run()].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(" ");
         let answer = if answer.is_empty() { answer } else { format!("{answer}\n\n") };
-        let answer = self.not_run() + &answer;
         let (counted, led) = (self.answers.counted(), self.answers.led());
         let whole = |title: &str, before: &str, body: &str| format!("# {title}\n\n{before}{}{}\n", contents(body), body.trim_end());
         let predicted = if self.predictions.is_some() {

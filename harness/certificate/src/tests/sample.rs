@@ -107,6 +107,6 @@ pub fn sample(doubts: usize, photographs: usize) -> (Certificate, String) {
         without_digest: Vec::new(),
     };
     let fields =
-        Fields { by: Some("A. N. Other, Laboratory of Photogrammetry".into()), place: Some("Somewhere".into()), ..Fields::default() };
+        Fields { by: Some("The operator, Laboratory of Photogrammetry".into()), place: Some("Somewhere".into()), ..Fields::default() };
     (Certificate { fields, camera: 0, record }, list)
 }
