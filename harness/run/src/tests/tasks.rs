@@ -62,7 +62,17 @@ fn what_cannot_be_calibrated_has_a_reason() {
     if !there("tasks") {
         return;
     }
-    let scenario = scenario("tasks/lengths", &[("trials = 40", "trials = 1"), ("opencv5", "opencv4")]);
-    let found = trials(&scenario, 1).swap_remove(0);
-    assert!(found.calibrations[0].outcome.as_ref().unwrap_err().contains("[camera] is none of the model opencv4"));
+    for (change, message) in [
+        (("opencv5", "opencv4"), "[camera] is none of the model opencv4"),
+        // No station has a twin that is far enough from it.
+        (
+            ("count = 12\ndistance = [350, 550]", "count = 6\ndistance = [900, 910]\nsees = 1"),
+            "no length of 60 mm and more was measured (poses stated)",
+        ),
+    ] {
+        let changes = [("trials = 40", "trials = 1"), change, ("tilt = 40", "tilt = 8")];
+        let found = trials(&scenario("tasks/lengths", &changes), 1).swap_remove(0);
+        let why = found.calibrations[0].outcome.as_ref().unwrap_err();
+        assert!(why.contains(message), "{message}: {why}");
+    }
 }

@@ -15,7 +15,7 @@ use crate::studies::told::Trial;
 /// The figures of one camera.
 ///
 /// # Errors
-/// In words: stations that cannot be drawn, covariances that are none.
+/// In words: stations that cannot be drawn, covariances that are none, a way in which no length was measured.
 pub(super) fn of(plan: &Tasks, trial: &Trial<'_>, board: &Board, found: &Calibration<'_>, key: Key<'_>) -> Result<Vec<Figure>, String> {
     let named = found.named_camera(0)?;
     let over_frame = found.over_frame.first().copied().flatten();
@@ -30,6 +30,12 @@ pub(super) fn of(plan: &Tasks, trial: &Trial<'_>, board: &Board, found: &Calibra
         let mut rng = stream(Key { view: "", target: &name, ..key }, Purpose::DrawnPoint);
         let way = place % Way::ALL.len();
         by_way[way].extend(measuring.measure(Way::ALL[way], &mut rng));
+    }
+    if let Some(way) = (0..Way::ALL.len().min(plan.count)).find(|way| by_way[*way].is_empty()) {
+        let (way, length, unit) = (Way::ALL[way].name(), plan.length, trial.subject.unit.name());
+        return Err(format!(
+            "no length of {length} {unit} and more was measured ({way}): expected a shorter `length`, or stations that see more of the board"
+        ));
     }
     let counts = found.solution.counts();
     let mut figures = vec![

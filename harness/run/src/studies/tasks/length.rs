@@ -1,7 +1,5 @@
 //! A length that a camera measures: its error, and what is said of it.
 
-use std::borrow::Cow;
-
 use calibench_adjust::approximate::{Control, Sight, fit_pose, intersect};
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
@@ -53,6 +51,16 @@ const HEIGHT: f64 = 0.4;
 /// Of the distance to the board, how far the stations of a pair are at least from each other.
 const BASE: f64 = 0.35;
 
+/// Two ends of a length in view.
+struct Scene {
+    /// Where they are, object units.
+    ends: [Point3<f64>; 2],
+    /// Where images are taken from.
+    poses: Vec<Pose>,
+    /// Where each image pictures both, as they are measured, px.
+    seen: Vec<[PixelPoint; 2]>,
+}
+
 /// What measures: the true camera, and what is known of it.
 pub(super) struct Measuring<'a> {
     pub(super) plan: &'a Tasks,
@@ -68,7 +76,7 @@ pub(super) struct Measuring<'a> {
 impl Measuring<'_> {
     /// A length, measured in this way; `None` where no pair of ends and stations was found, or the budget refuses it.
     pub(super) fn measure(&self, way: Way, rng: &mut impl Rng) -> Option<Measured> {
-        let (ends, poses, seen) = (0..TRIES).find_map(|_| self.scene(way, rng))?;
+        let Scene { ends, poses, seen } = (0..TRIES).find_map(|_| self.scene(way, rng))?;
         let stated = way != Way::FromBoard;
         let [sigma_centre, sigma_angles] = [self.plan.centre_sigma, self.plan.angle_sigma].map(|sigma| if stated { sigma } else { 0.0 });
         let plane =
@@ -99,8 +107,8 @@ impl Measuring<'_> {
         Some(Measured { length, error: (found[1] - found[0]).norm() - length, sigma: budget.components.first()?.sigma })
     }
 
-    /// Two ends and who pictures them where; `None` where something is not in view.
-    fn scene(&self, way: Way, rng: &mut impl Rng) -> Option<([Point3<f64>; 2], Cow<'_, [Pose]>, Vec<[PixelPoint; 2]>)> {
+    /// Ends and stations as they are drawn; `None` where something is not in view.
+    fn scene(&self, way: Way, rng: &mut impl Rng) -> Option<Scene> {
         let [half_x, half_y] = self.board.half;
         let height = if way == Way::Plane { 0.0 } else { HEIGHT * half_x.min(half_y) };
         let mut end = || {
@@ -121,7 +129,7 @@ impl Measuring<'_> {
             let [from, to] = ends.map(|end| self.seen(pose, &end, rng));
             seen.push([from?, to?]);
         }
-        Some((ends, Cow::Owned(poses), seen))
+        Some(Scene { ends, poses, seen })
     }
 
     /// Where the true camera pictures a point, as it is measured.
