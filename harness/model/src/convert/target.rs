@@ -4,7 +4,7 @@ use super::ConvertError;
 use super::brown::BrownForm;
 use crate::camera::{
     Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize,
-    LensProjection, MicMac, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
+    LensProjection, MicMac, Ocam, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
     TangentialOrder,
 };
 
@@ -86,6 +86,8 @@ pub enum Target {
         /// How the lens pictures angles.
         projection: LensProjection,
     },
+    /// Scaramuzza's omnidirectional camera, with a0 and a2 to a4.
+    Ocam,
     /// Metashape's fisheye.
     MetashapeFisheye {
         /// How it pictures angles.
@@ -169,6 +171,7 @@ impl Target {
                 SixPrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()
             }
             Self::PtLens { projection } => PtLens { size, projection, f: 1.0, cx: 0.0, cy: 0.0, a: 0.0, b: 0.0, c: 0.0 }.into(),
+            Self::Ocam => Ocam::round(size, [0.0; 2], [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).into(),
             Self::MetashapeFisheye { projection } => {
                 AgisoftFisheye { size, projection, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 2] }.into()
             }
@@ -195,6 +198,7 @@ impl Target {
             Self::Ebner { .. } => [&K[..], &P[..], &B[..]].concat(),
             Self::Agisoft { radial, tangential, affinity: b, .. } => [&K[radial..], &P[tangential..], affinity(b)].concat(),
             Self::OpenCvFisheye => vec!["skew", "alpha"],
+            Self::Ocam => vec!["a1", "a5", "a6"],
             Self::Division => vec!["alpha"],
             Self::Centred { radial } => [&["cx", "cy"], &K[radial..], &P[..], &B[..]].concat(),
             Self::SixPrismFisheye { prism: false } => vec!["s0", "s1", "s2", "s3"],
