@@ -53,7 +53,8 @@ pub fn joined<'a>(files: impl IntoIterator<Item = (&'a Path, Vec<NamedCamera>)>)
 /// Why the poses are not known to be in one world; `None` where they are taken to be.
 fn without_common_world(files: &[(&Path, Vec<NamedCamera>)]) -> Option<String> {
     let shown = |path: &Path| path.display().to_string();
-    let all: Vec<(&Path, &NamedCamera)> = files.iter().flat_map(|(path, cameras)| cameras.iter().map(move |named| (*path, named))).collect();
+    let all: Vec<(&Path, &NamedCamera)> =
+        files.iter().flat_map(|(path, cameras)| cameras.iter().map(move |named| (*path, named))).collect();
     if let Some((path, _)) = all.iter().find(|(_, named)| named.pose.is_none()) {
         return Some(format!("{} states none", shown(path)));
     }

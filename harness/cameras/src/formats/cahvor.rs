@@ -37,10 +37,14 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
 
 /// The vectors in the order of the labels' components.
 const VECTORS: [&str; 6] = ["C", "A", "H", "V", "O", "R"];
+/// What follows from the vectors, and their covariance.
+const BESIDE: [&str; 9] = ["Model", "Dimensions", "Hs", "Hc", "Vs", "Vc", "Theta", "S", "VALID_INTRINSICS_REGION"];
 /// Below this, radians, the axes of lens and image plane are one, and H' and V' perpendicular.
 const ROUNDING: f64 = 1e-13;
 /// A skew that moves no pixel of the frame by more is one of rounded numbers, px.
 const LEAST_SKEW: f64 = 1e-6;
+/// One beside a lens with an axis of its own is left out, and said, if it moves none by more, px.
+const MOST_SKEW: f64 = 0.01;
 
 /// Line, name and value of a statement.
 type Statement<'a> = (usize, &'a str, String);
@@ -109,19 +113,32 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     });
     let size = options.size_or(stated.transpose()?)?;
     // mrcal writes its own lenses beside the vectors.
-    if let Some((line, name, _)) = all.iter().find(|(_, name, _)| name.starts_with("LENSMODEL") || name.starts_with("DISTORTION") || *name == "E") {
+    if let Some((line, name, _)) =
+        all.iter().find(|(_, name, _)| name.starts_with("LENSMODEL") || name.starts_with("DISTORTION") || *name == "E")
+    {
         return Err(CameraFileError::new("is no part of CAHVOR; expected C, A, H, V, O, R").on_line(*line).of(*name));
     }
     let one = |index: usize| vector(&all, index)?.ok_or_else(|| CameraFileError::new("missing").of(VECTORS[index]));
     let (c, a, h, v) = (one(0)?, one(1)?, one(2)?, one(3)?);
     let (o, r) = (vector(&all, 4)?.unwrap_or(a), vector(&all, 5)?.unwrap_or_default());
-    let (camera, rotation) = camera(size, [a, h, v, o], [r.x, r.y, r.z])?;
+    let (camera, rotation, note) = camera(size, [a, h, v, o], [r.x, r.y, r.z])?;
+    let mut notes = Vec::new();
+    if text("C").is_some() {
+        // A label has many other things.
+        let unknown = all.iter().filter(|(_, name, _)| !VECTORS.contains(name) && !BESIDE.contains(name));
+        notes = options.of_file(unknown.map(|(line, name, _)| (*name, *line)), |line, error| error.on_line(line))?;
+    }
+    notes.extend(note);
     let pose = Pose { camera_from_world: std::array::from_fn(|i| std::array::from_fn(|j| rotation[(i, j)])), position: [c.x, c.y, c.z] };
-    Ok(vec![NamedCamera { pose: Some(pose), ..NamedCamera::new("", camera) }])
+    Ok(vec![NamedCamera { pose: Some(pose), notes, ..NamedCamera::new("", camera) }])
 }
 
-/// The camera in the axes of its lens, and the rotation to them.
-fn camera(size: ImageSize, [a, h, v, o]: [Vector3<f64>; 4], [r0, r1, r2]: [f64; 3]) -> Result<(Camera, Matrix3<f64>), CameraFileError> {
+/// The camera in the axes of its lens, the rotation to them, and what was left out.
+fn camera(
+    size: ImageSize,
+    [a, h, v, o]: [Vector3<f64>; 4],
+    [r0, r1, r2]: [f64; 3],
+) -> Result<(Camera, Matrix3<f64>, Option<String>), CameraFileError> {
     let scale = 1.0 + r0;
     let (Some(axis), true) = (o.try_normalize(1e-9), scale > 0.0) else {
         return Err(CameraFileError::new("expected an axis O and a factor 1 + R[0] above zero").of("O"));
@@ -131,7 +148,9 @@ fn camera(size: ImageSize, [a, h, v, o]: [Vector3<f64>; 4], [r0, r1, r2]: [f64; 
     };
     let frame = Matrix3::from_rows(&[right.transpose(), axis.cross(&right).transpose(), axis.transpose()]);
     // From the distorted direction before the lens to columns and rows.
-    let to_image = Matrix3::from_rows(&[h.transpose(), v.transpose(), a.transpose()]) * frame.transpose() * Matrix3::from_diagonal(&Vector3::new(scale, scale, 1.0));
+    let to_image = Matrix3::from_rows(&[h.transpose(), v.transpose(), a.transpose()])
+        * frame.transpose()
+        * Matrix3::from_diagonal(&Vector3::new(scale, scale, 1.0));
     let n = to_image / to_image.row(2).norm();
     if !(n[(2, 2)] > 1e-6 && n.iter().all(|value| value.is_finite())) {
         return Err(CameraFileError::new("looks away from the axis of the lens, O").of("A"));
@@ -157,20 +176,33 @@ fn camera(size: ImageSize, [a, h, v, o]: [Vector3<f64>; 4], [r0, r1, r2]: [f64; 
     let moves = skew.abs() * f64::from(size.width.max(size.height)) / fx;
     let [k1, k2] = [r1 / scale, r2 / scale];
     let plain = Brown { k: [k1, k2, 0.0, 0.0], ..Brown::plain(size, [fx, fy, cx, cy]) };
+    let tilted = || {
+        let mut distortion = [0.0; 14];
+        [distortion[0], distortion[1], distortion[12], distortion[13]] = [k1, k2, tx, ty];
+        Camera::from(OpenCv { size, fx, fy, cx, cy, distortion, coefficients: 14 })
+    };
+    let mut note = None;
     let camera = match (moves > LEAST_SKEW, tx == 0.0 && ty == 0.0) {
         (false, true) => plain.camera(),
-        (false, false) => {
-            let mut distortion = [0.0; 14];
-            [distortion[0], distortion[1], distortion[12], distortion[13]] = [k1, k2, tx, ty];
-            OpenCv { size, fx, fy, cx, cy, distortion, coefficients: 14 }.into()
+        (false, false) => tilted(),
+        (true, true) => {
+            let (camera, rotation) = skewed(plain, skew, rotation);
+            return Ok((camera, rotation, None));
         }
-        (true, true) => return Ok(skewed(plain, skew, rotation)),
-        (true, false) => {
-            let problem = format!("is not perpendicular to V, by up to {moves:.2} px in the frame, and the lens has an axis of its own: no model here holds both");
+        (true, false) if moves > MOST_SKEW => {
+            let problem = format!(
+                "is not perpendicular to V, by up to {moves:.2} px in the frame, and the lens has an axis of its own: no model here holds both"
+            );
             return Err(CameraFileError::new(problem).of("H"));
         }
+        (true, false) => {
+            note = Some(format!(
+                "columns and rows, which R[0] shears before a tilted sensor, are taken to be perpendicular: up to {moves:.1e} px off"
+            ));
+            tilted()
+        }
     };
-    Ok((camera, rotation))
+    Ok((camera, rotation, note))
 }
 
 /// A skew that stands in the first row, where Metashape has it: the lens is turned until the second row has none.
@@ -205,7 +237,14 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let line = |name: &str, [x, y, z]: [f64; 3]| format!("{name} = {} {} {}\n", shortest(x), shortest(y), shortest(z));
     let row = |index: usize| [0, 1, 2].map(|j| rows[(index, j)]);
     let ImageSize { width, height } = camera.size();
-    let vectors = [("C", pose.position), ("A", row(2)), ("H", row(0)), ("V", row(1)), ("O", [0, 1, 2].map(|j| rotation[(2, j)])), ("R", [0.0, k[0], k[1]])];
+    let vectors = [
+        ("C", pose.position),
+        ("A", row(2)),
+        ("H", row(0)),
+        ("V", row(1)),
+        ("O", [0, 1, 2].map(|j| rotation[(2, j)])),
+        ("R", [0.0, k[0], k[1]]),
+    ];
     let lines: String = vectors.iter().map(|(name, vector)| line(name, *vector)).collect();
     Ok(format!("Model = CAHVOR = perspective, distortion\nDimensions = {width} {height}\n{lines}"))
 }

@@ -39,22 +39,19 @@ fn value<'a>(text: &'a str, names: &[&str]) -> Option<(usize, &'a str)> {
     let (at, name) = names.iter().filter_map(|name| Some((find(text, name)?, name))).min()?;
     let rest = text[at + name.len()..].trim_start_matches([' ', '\t', '=', ':', '>', '"', '\'']);
     let end = rest.find(['"', '\'', '<', '\n', '\r']).unwrap_or(rest.len());
-    Some((1 + text[..at].matches('\n').count(), rest[..end].trim()))
+    Some((1 + text[..at].matches('\n').count(), rest[..end].trim().trim_end_matches(',')))
 }
 
 /// Where a name stands that is not the end or the beginning of a longer one.
 fn find(text: &str, name: &str) -> Option<usize> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
-    text.match_indices(name).map(|(at, _)| at).find(|&at| {
-        !text[..at].ends_with(is_part) && !text[at + name.len()..].starts_with(is_part)
-    })
+    text.match_indices(name).map(|(at, _)| at).find(|&at| !text[..at].ends_with(is_part) && !text[at + name.len()..].starts_with(is_part))
 }
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let stated = |names: &[&str]| value(source.text, names);
-    let side = |names: &[&str]| {
-        stated(names).map(|(line, text)| pixels(text).map_err(|error| error.on_line(line).of(names[0]))).transpose()
-    };
+    let side =
+        |names: &[&str]| stated(names).map(|(line, text)| pixels(text).map_err(|error| error.on_line(line).of(names[0]))).transpose();
     let sides = side(&SIDES[0])?.zip(side(&SIDES[1])?);
     let size = options.size_or(sides.map(|(width, height)| ImageSize { width, height }))?;
     let (line, data) = stated(&DATA).ok_or_else(|| CameraFileError::new("has none").of(DATA[0]))?;
@@ -62,7 +59,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let (date, numbers) = data.split_once(';').unwrap_or(("", data));
     let found: Vec<f64> = numbers.split(',').map(finite).collect::<Result<_, _>>().map_err(at)?;
     let [fx, fy, dx, dy, k1, k2, p1, p2, k3] = found[..] else {
-        let problem = format!("expected a date, `;` and {NUMBERS} numbers (fx, fy, cx, cy, k1, k2, p1, p2, k3), found `{}`", shortened(data));
+        let problem =
+            format!("expected a date, `;` and {NUMBERS} numbers (fx, fy, cx, cy, k1, k2, p1, p2, k3), found `{}`", shortened(data));
         return Err(at(CameraFileError::new(problem)));
     };
     let centre = |names: &[&str], side: u32| match stated(names) {

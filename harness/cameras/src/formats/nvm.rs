@@ -45,7 +45,9 @@ fn camera(size: ImageSize, [fx, fy, cx, cy]: Focal, radial: f64) -> Result<Camer
         return Ok(Brown::plain(size, [fx, fy, cx, cy]).camera());
     }
     if fx != fy {
-        return Err(CameraFileError::new(format!("has the radial coefficient {radial} beside two focal lengths, {fx} and {fy}: in units of which is not known")));
+        return Err(CameraFileError::new(format!(
+            "has the radial coefficient {radial} beside two focal lengths, {fx} and {fy}: in units of which is not known"
+        )));
     }
     let centre = middle(size);
     let k = [-radial / (fx * fx), 0.0, 0.0];
@@ -67,7 +69,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let mut lines = source.lines();
     let (number, header) = lines.next().ok_or_else(|| CameraFileError::new("is empty"))?;
     let fixed = fixed(header, number)?;
-    let mut next = |what: &str| lines.next().ok_or_else(|| CameraFileError::new(format!("ends before {what}; it was cut off or its counts are wrong")));
+    let mut next = |what: &str| {
+        lines.next().ok_or_else(|| CameraFileError::new(format!("ends before {what}; it was cut off or its counts are wrong")))
+    };
     let count = |(line, text): (usize, &str), what: &str| {
         text.parse::<usize>().map_err(|_| CameraFileError::new(format!("expected {what}, found `{}`", shortened(text))).on_line(line))
     };

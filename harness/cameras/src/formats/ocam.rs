@@ -1,7 +1,7 @@
 //! OCamCalib's calib_results.txt: a polynomial of the distance from the centre, another one back, centre, three affine numbers.
 
-use calibench_model::PixelPoint;
 use calibench_model::NamedCamera;
+use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Ocam, ocam};
 use calibench_model::convert::Target;
 use nalgebra::{DMatrix, DVector};
@@ -22,7 +22,9 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     convention: Some(&ocam::CONVENTION),
-    models: |_| vec![Model { name: "a0, a2 to a4", target: Target::Ocam }],
+    models: |_| {
+        vec![Model { name: "degree 4", target: Target::Ocam { degree: 4 } }, Model { name: "degree 6", target: Target::Ocam { degree: 6 } }]
+    },
     ..PLAIN
 };
 
@@ -51,7 +53,9 @@ fn recognise(source: &Source<'_>) -> Result<(), String> {
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let mut lines = source.lines().filter(|(_, line)| !line.starts_with('#'));
     let mut next = |name: &'static str| -> Result<(usize, Vec<f64>), CameraFileError> {
-        let (line, text) = lines.next().ok_or_else(|| CameraFileError::new("missing: the file ends before it").of(name))?;
+        let (line, text) = lines
+            .next()
+            .ok_or_else(|| CameraFileError::new("missing: the file ends before it").on_line(source.text.lines().count()).of(name))?;
         let found = text.split_whitespace().map(finite).collect::<Result<_, _>>();
         found.map(|values| (line, values)).map_err(|error| error.on_line(line).of(name))
     };
@@ -65,7 +69,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     };
     let ((_, centre), (affine_line, affine), (size_line, sides)) = (fixed(NAMES[2], 2)?, fixed(NAMES[3], 3)?, fixed(NAMES[4], 2)?);
     let side = |index: usize| pixels(&sides[index].to_string()).map_err(|error| error.on_line(size_line).of(NAMES[4]));
-    let size = options.size_or(Some(ImageSize { width: side(1)?, height: side(0)? })).map_err(|error| error.on_line(size_line).of(NAMES[4]))?;
+    let size =
+        options.size_or(Some(ImageSize { width: side(1)?, height: side(0)? })).map_err(|error| error.on_line(size_line).of(NAMES[4]))?;
     let [c, d, e] = [affine[0], affine[1], affine[2]];
     if !(c > 0.0 && c - d * e > 0.0) {
         return Err(CameraFileError::new("expected c above zero and above d e").on_line(affine_line).of(NAMES[3]));
@@ -90,7 +95,11 @@ fn coefficients(found: &[f64]) -> Result<[f64; 7], CameraFileError> {
         return Err(CameraFileError::new(format!("has {} coefficients; expected at most {}, degree 6", found.len(), a.len())));
     }
     a[..found.len()].copy_from_slice(found);
-    if a[0] < 0.0 { Ok(a) } else { Err(CameraFileError::new(format!("begins with {}; expected a number below zero: the camera looks along -z", a[0]))) }
+    if a[0] < 0.0 {
+        Ok(a)
+    } else {
+        Err(CameraFileError::new(format!("begins with {}; expected a number below zero: the camera looks along -z", a[0])))
+    }
 }
 
 /// Corners of the frame and the middles of its sides: how far `back` leads from the farthest off of those that have a ray, px, and which it is.
@@ -130,9 +139,11 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
 /// The polynomial back, of the angle `atan(z / norm)`, by least squares over what the frame shows.
 fn back(camera: &Ocam) -> Result<Vec<f64>, CameraFileError> {
     let ImageSize { width, height } = camera.size;
-    let corners = [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1)].map(|(x, y)| PixelPoint::new(f64::from(x), f64::from(y)));
+    let corners =
+        [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1)].map(|(x, y)| PixelPoint::new(f64::from(x), f64::from(y)));
     let round = Ocam { c: 1.0, d: 0.0, e: 0.0, ..*camera };
-    let farthest = corners.iter().map(|at| at.distance(PixelPoint::new(camera.cx, camera.cy))).fold(0.0, f64::max) * camera.c.max(1.0 / camera.c);
+    let farthest =
+        corners.iter().map(|at| at.distance(PixelPoint::new(camera.cx, camera.cy))).fold(0.0, f64::max) * camera.c.max(1.0 / camera.c);
     let places: Vec<(f64, f64)> = (1..=PLACES)
         .filter_map(|i| {
             let rho = farthest * i as f64 / PLACES as f64;
@@ -147,7 +158,8 @@ fn back(camera: &Ocam) -> Result<Vec<f64>, CameraFileError> {
     let n = (BACK + 1).min(places.len());
     let design = DMatrix::from_fn(places.len(), n, |i, j| ((places[i].0 - middle) / half).powi(j as i32));
     let right = DVector::from_iterator(places.len(), places.iter().map(|place| place.1));
-    let found = design.svd(true, true).solve(&right, 1e-14).map_err(|_| CameraFileError::new("has no polynomial back: no pixel has a ray"))?;
+    let found =
+        design.svd(true, true).solve(&right, 1e-14).map_err(|_| CameraFileError::new("has no polynomial back: no pixel has a ray"))?;
     let mut back = vec![0.0; n];
     // (theta - middle) / half as a polynomial, by Horner's scheme.
     for b in found.iter().rev() {

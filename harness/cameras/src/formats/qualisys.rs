@@ -21,7 +21,9 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
             centerPointU centerPointV radialDistortion1 tangentalDistortion1",
     many: true,
     recognise: |source| {
-        let found = source.xml.as_ref().is_some_and(|document| document.descendants().any(|node| node.has_tag_name("intrinsic") && node.has_attribute("focalLengthU")));
+        let found = source.xml.as_ref().is_some_and(|document| {
+            document.descendants().any(|node| node.has_tag_name("intrinsic") && node.has_attribute("focalLengthU"))
+        });
         if found { Ok(()) } else { Err("no `intrinsic` with `focalLengthU`".into()) }
     },
     read,
@@ -71,7 +73,8 @@ fn camera(node: Node<'_, '_>, intrinsic: Node<'_, '_>, name: String, options: &R
     let number = |name: &str| finite(xml::attribute(intrinsic, name)?).map_err(|error| wrong(name, error));
     let or_zero = |name: &str| if intrinsic.has_attribute(name) { number(name) } else { Ok(0.0) };
     // The first and the last of the parts that the sensor has.
-    let side = |low: &str, high: &str| pixels(&((number(high)? - number(low)? + 1.0) / PARTS).to_string()).map_err(|error| wrong(high, error));
+    let side =
+        |low: &str, high: &str| pixels(&((number(high)? - number(low)? + 1.0) / PARTS).to_string()).map_err(|error| wrong(high, error));
     let stated = ImageSize { width: side("sensorMinU", "sensorMaxU")?, height: side("sensorMinV", "sensorMaxV")? };
     let size = options.size_or(Some(stated)).map_err(|error| xml::at(intrinsic, error))?;
     let px = |name: &str| Ok::<f64, CameraFileError>(number(name)? / PARTS);
@@ -83,7 +86,8 @@ fn camera(node: Node<'_, '_>, intrinsic: Node<'_, '_>, name: String, options: &R
         return Err(wrong("skew", CameraFileError::new(format!("is {skew}: in which unit is not publicly known; expected 0"))));
     }
     let attributes = intrinsic.attributes().map(|attribute| (attribute.name(), ()));
-    let mut notes = options.of_lens(attributes, &KNOWN, |(), error| xml::at(intrinsic, error.clone()).of(error.element.unwrap_or_default()))?;
+    let mut notes =
+        options.of_lens(attributes, &KNOWN, |(), error| xml::at(intrinsic, error.clone()).of(error.element.unwrap_or_default()))?;
     if xml::child(node, "transform")?.is_some() {
         notes.push(left_out("transform"));
     }

@@ -43,14 +43,17 @@ impl Convert {
 
     fn of_several(&self, quiet: bool) -> Result<Vec<Source>, Failure> {
         if self.to.is_none() {
-            return Err(Failure::input("several files become one, or a folder of files: expected --to, which names the convention of the new file"));
+            return Err(Failure::input(
+                "several files become one, or a folder of files: expected --to, which names the convention of the new file",
+            ));
         }
         if self.naive || self.plot.is_some() {
             return Err(Failure::input("--naive and --plot are for one camera, found several files"));
         }
         let read: Vec<_> = self.files.iter().map(|file| self.reading.all(file)).collect::<Result<_, Failure>>()?;
         let formats: Vec<_> = read.iter().flat_map(|(format, cameras)| cameras.iter().map(|_| *format)).collect();
-        let Joined { cameras, poses } = joined(self.files.iter().map(|file| file.as_path()).zip(read.into_iter().map(|(_, cameras)| cameras)));
+        let Joined { cameras, poses } =
+            joined(self.files.iter().map(|file| file.as_path()).zip(read.into_iter().map(|(_, cameras)| cameras)));
         if !quiet {
             say!("{}", escape::name(&poses));
         }

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
-    NoCounterpart, Ocam, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, Ray, Reframe, Resampling,
-    SixPrismFisheye, Slopes, Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, ocam, omni, opencv, opencv_fisheye,
-    photogrammetric, pix4d, prism_fisheye, pt_lens, rad_tan_prism_fisheye, six_prism_fisheye, tool_conventions,
+    NoCounterpart, Ocam, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, Ray, Reframe,
+    Resampling, SixPrismFisheye, Slopes, Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, ocam, omni,
+    opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, pt_lens, rad_tan_prism_fisheye, six_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;
 

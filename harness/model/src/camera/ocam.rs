@@ -299,7 +299,10 @@ mod tests {
         let end = (300.0_f64 / 0.01).sqrt();
         let fold = crate::camera::fold(&camera).unwrap();
         assert!((fold.radius_px - end).abs() < 1e-3, "{fold:?}");
-        assert!(camera.unproject(PixelPoint::new(380.0 + end + 0.1, 240.0)).is_err() && camera.unproject(PixelPoint::new(380.0 + end - 0.1, 240.0)).is_ok());
+        assert!(
+            camera.unproject(PixelPoint::new(380.0 + end + 0.1, 240.0)).is_err()
+                && camera.unproject(PixelPoint::new(380.0 + end - 0.1, 240.0)).is_ok()
+        );
         assert!(camera.project(Ray { x: 1.0, y: 0.0, z: -3.4 }).is_err() && camera.project(Ray { x: 1.0, y: 0.0, z: -3.5 }).is_ok());
     }
 }

@@ -22,9 +22,9 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
         (Camera::SixPrismFisheye(from), Target::SixPrismFisheye { prism }) => (*prism || from.s == [0.0; 4]).then_some(*source),
         (_, Target::SixPrismFisheye { prism }) => to_six(source).filter(|six| *prism || six.s == [0.0; 4]).map(Camera::from),
         (Camera::SixPrismFisheye(from), _) => exact(&of_six(from)?.into(), target),
-        // The toolbox holds any degree.
-        (Camera::Ocam(_), Target::Ocam) => Some(*source),
-        (_, Target::Ocam) => to_ocam(source),
+        // A polynomial of any degree is one.
+        (Camera::Ocam(_), Target::Ocam { .. }) => Some(*source),
+        (_, Target::Ocam { .. }) => to_ocam(source),
         (Camera::PtLens(from), Target::PtLens { projection }) => (from.projection == *projection).then_some(*source),
         (_, Target::PtLens { projection }) => to_pt_lens(source, *projection),
         (Camera::PtLens(from), Target::OpenCvFisheye) => of_pt_lens(from).filter(|camera| matches!(camera, Camera::OpenCvFisheye(_))),
@@ -219,7 +219,7 @@ pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
             vec![PtLens { size, projection: *projection, f, cx, cy, a: 0.0, b: 0.0, c: 0.0 }.into()]
         }
         // Equidistant to its second term, stereographic, the pinhole.
-        Target::Ocam => [1.0 / 3.0, 0.25, 0.0]
+        Target::Ocam { .. } => [1.0 / 3.0, 0.25, 0.0]
             .map(|bend| Ocam { c: fy / fx, ..Ocam::round(size, [cx, cy], [-fx, 0.0, bend / fx, 0.0, 0.0, 0.0, 0.0]) }.into())
             .into(),
         Target::RadTanPrismFisheye => {

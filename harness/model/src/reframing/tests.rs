@@ -3,8 +3,8 @@
 use super::*;
 use crate::NamedCamera;
 use crate::camera::{
-    Agisoft, AgisoftFisheye, AgisoftVersion, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, LensProjection, MicMac, Ocam, Omni,
-    OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, LensProjection, MicMac, Ocam,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye, TangentialOrder,
 };
 use crate::named_camera::{ParameterCovariance, Pose};
 
