@@ -68,10 +68,14 @@ fn statements<'a>(source: &Source<'a>) -> Vec<Statement<'a>> {
     found
 }
 
-/// The statement of a vector: by its letter, or by its number in a label.
+/// Whether a statement's name is that of a vector: its letter, or its number in a label.
+fn is_vector(name: &str, index: usize) -> bool {
+    name == VECTORS[index] || name.strip_prefix("MODEL_COMPONENT_").is_some_and(|number| number.parse() == Ok(index + 1))
+}
+
+/// The statement of a vector.
 fn vector(all: &[Statement<'_>], index: usize) -> Result<Option<Vector3<f64>>, CameraFileError> {
-    let names = [VECTORS[index].to_owned(), format!("MODEL_COMPONENT_{}", index + 1)];
-    let mut found = all.iter().filter(|(_, name, _)| names.iter().any(|known| known == name));
+    let mut found = all.iter().filter(|(_, name, _)| is_vector(name, index));
     let Some((line, name, value)) = found.next() else { return Ok(None) };
     let at = |error: CameraFileError| error.on_line(*line).of(*name);
     if let Some((second, ..)) = found.find(|(.., other)| other != value) {
@@ -121,7 +125,12 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let one = |index: usize| vector(&all, index)?.ok_or_else(|| CameraFileError::new("missing").of(VECTORS[index]));
     let (c, a, h, v) = (one(0)?, one(1)?, one(2)?, one(3)?);
     let (o, r) = (vector(&all, 4)?.unwrap_or(a), vector(&all, 5)?.unwrap_or_default());
-    let (camera, rotation, note) = camera(size, [a, h, v, o], [r.x, r.y, r.z])?;
+    let placed = |error: CameraFileError| {
+        let index = VECTORS.iter().position(|name| error.element.as_deref() == Some(name));
+        let line = index.and_then(|index| all.iter().find(|(_, name, _)| is_vector(name, index))).or(all.first());
+        error.on_line(line.map_or(1, |(line, ..)| *line))
+    };
+    let (camera, rotation, note) = camera(size, [a, h, v, o], [r.x, r.y, r.z]).map_err(placed)?;
     let mut notes = Vec::new();
     if text("C").is_some() {
         // A label has many other things.

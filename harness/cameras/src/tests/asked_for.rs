@@ -223,7 +223,7 @@ fn cahvor_is_a_lens_before_a_tilted_sensor() {
             ("= CAHVOR =", "= CAHVORE =", "f:2, `Model`: `CAHVORE` is no camera model here; expected CAHV or CAHVOR"),
             ("H = 500 0 320", "H = 500 0", "f:7, `H`: expected 3 numbers, found 2"),
             ("H = 500 0 320", "H = 500 x 320", "f:7, `H`: expected a finite number"),
-            ("V = 0 500 240", "V = 0 -500 240", "`V`: makes the image a mirror image"),
+            ("V = 0 500 240", "V = 0 -500 240", "f:8, `V`: makes the image a mirror image"),
             ("V = 0 500 240", "V = 0 500 240\nV = 0 501 240", "f:9, `V`: stands twice, first on line 8"),
             ("V = 0 500 240", "V = 30 500 240", "`H`: is not perpendicular to V"),
             ("O = 0.28 0 0.96", "O = 0.48 -0.36 0.8", "`H`: is not perpendicular to V"),
