@@ -9,6 +9,67 @@ const RIG: &str = "cam0:\n  camera_model: ds\n  intrinsics: [-0.24, 0.57, 350.0,
     distortion_coeffs: [-0.28, 0.07, 2.0e-4, 1.0e-5]\n  resolution: [752, 480]\n  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.11]\n  - [0.0, 1.0, 0.0, 0.0]\n  \
     - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n";
 
+/// A camera of mrcal's at a place; its axes are those of the world.
+fn cameramodel(focal: f64, [x, y, z]: [f64; 3]) -> String {
+    format!(
+        "{{ 'lensmodel': 'LENSMODEL_OPENCV4',\n 'intrinsics': [ {focal}, 501, 320, 240, 0.1, 0, 0, 0,],\n 'extrinsics': [ 0, 0, 0, {}, {}, {} ],\n 'imagersize': [ 640, 480 ],\n}}\n",
+        -x, -y, -z
+    )
+}
+
+/// One file per camera becomes one chain, with the poses between the cameras where the files state them.
+#[test]
+fn several_files_become_one() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for (name, focal, place) in [("left", 500.0, [1.0, 2.0, 3.0]), ("middle", 510.0, [1.25, 2.0, 3.0]), ("right", 520.0, [1.5, 2.0, 3.0])] {
+        std::fs::write(at(&format!("{name}.cameramodel")), cameramodel(focal, place)).unwrap();
+    }
+    std::fs::write(at("again.cameramodel"), cameramodel(530.0, [1.0, 2.0, 3.0])).unwrap();
+    std::fs::write(at("camera.yml"), CAMERA).unwrap();
+    let models = ["left.cameramodel", "middle.cameramodel", "right.cameramodel"];
+    let said = good(folder.path(), &[&["convert"][..], &models, &["--to", "kalibr", "-o", "chain.yaml"]].concat());
+    assert!(said.contains("poses between the cameras as the files state them, in one world"), "{said}");
+    let chain = calibench_cameras::read_camera(&at("chain.yaml")).unwrap().cameras;
+    assert_eq!(chain.iter().map(|named| named.name.as_str()).collect::<Vec<_>>(), ["left", "middle", "right"]);
+    for (named, x) in chain.iter().zip([0.0, 0.25, 0.5]) {
+        assert!(named.pose.unwrap().position.iter().zip([x, 0.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{named:?}");
+    }
+    // COLMAP's list has no poses: that they are lost is said.
+    let said = good(folder.path(), &["convert", models[0], "chain.yaml", "--to", "colmap", "-o", "cameras.txt"]);
+    assert!(
+        said.contains("no poses between the cameras are known: chain.yaml states them in another frame than left.cameramodel"),
+        "{said}"
+    );
+    assert_eq!(calibench_cameras::read_camera(&at("cameras.txt")).unwrap().cameras.len(), 4);
+    let said = good(folder.path(), &["convert", models[0], "again.cameramodel", "--to", "kalibr", "-o", "two.yaml"]);
+    assert!(said.contains("left.cameramodel and again.cameramodel state the same pose, and no two cameras have the same"), "{said}");
+    assert!(calibench_cameras::read_camera(&at("two.yaml")).unwrap().cameras.iter().all(|named| named.pose.is_none()));
+    // A format of one camera a file has a folder, and a file each.
+    good(folder.path(), &["convert", models[0], models[1], "--to", "opencv", "-o", "each"]);
+    assert_eq!(
+        std::fs::read_dir(at("each"))
+            .unwrap()
+            .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".yaml"))
+            .count(),
+        2
+    );
+    let text = run(folder.path(), &["convert", models[0], models[1], "--to", "kalibr", "--json"]);
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&text)).unwrap();
+    assert_eq!((&answer["file"], answer["cameras"].as_array().unwrap().len()), (&"left.cameramodel, middle.cameramodel".into(), 2));
+    for (arguments, expected) in [
+        (vec![models[0], models[1], "--scale", "0.5"], "expected --to, which names the convention of the new file"),
+        (vec![models[0], models[1], "--to", "photogrammetric", "--naive"], "--naive and --plot are for one camera"),
+        (vec![models[0], models[1], "--to", "opencv", "-o", "one.yaml"], "opencv-yaml holds one camera a file: name a folder with -o"),
+        (vec![models[0], "gone.yaml", "--to", "kalibr"], "gone.yaml"),
+        (vec![models[0], models[1], "--to", "kalibr", "-o", "left.cameramodel"], "left.cameramodel"),
+    ] {
+        let output = run(folder.path(), &[vec!["convert"], arguments].concat());
+        assert!(!output.status.success() && stderr(&output).contains(expected), "{expected}: {}", stderr(&output));
+    }
+    assert!(std::fs::read_to_string(at("left.cameramodel")).unwrap().contains("LENSMODEL"));
+}
+
 #[test]
 fn every_tool_s_file_is_written_and_read_again() {
     let folder = folder();
@@ -34,6 +95,8 @@ fn every_tool_s_file_is_written_and_read_again() {
         ("gyroflow", true),
         ("matlab", true),
         ("usd", true),
+        ("ocam", false),
+        ("cahvor", false),
         ("lensfun", false),
         ("panotools", false),
         ("bundler", false),

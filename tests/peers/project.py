@@ -166,6 +166,15 @@ def mrcal(path, points):
     return mrcal.project(points, *model.intrinsics())
 
 
+def cahvor(path, points):
+    """mrcal reads the vectors; the points are in the world, for the axes of its camera are those of the image plane and not the lens's."""
+    import mrcal
+    import mrcal.cahvor
+
+    model = mrcal.cahvor.read(path)
+    return mrcal.project(mrcal.transform_point_Rt(model.extrinsics_Rt_fromref(), points), *model.intrinsics())
+
+
 def ros(path, points):
     """camera_calibration_parsers reads the YAML; image_geometry has no way to the distorted image, OpenCV's functions are what it calls."""
     import camera_calibration_parsers

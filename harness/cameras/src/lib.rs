@@ -15,6 +15,7 @@ pub mod for_file;
 mod format;
 pub mod formats;
 mod ids;
+pub mod joined;
 mod json;
 mod kalibr_target;
 mod keys;

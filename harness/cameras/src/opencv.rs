@@ -140,7 +140,7 @@ fn spread_names(camera: &Camera) -> [Vec<&'static str>; 3] {
 
 /// The variances of a camera's parameters, where the file has standard deviations; a zero is one that was held fixed.
 fn spreads(root: &Entry, camera: &Camera, notes: &mut Vec<String>) -> Result<Option<ParameterCovariance>, CameraFileError> {
-    let (mut names, mut variances, mut any) = (Vec::new(), Vec::new(), false);
+    let (mut names, mut variances, mut any, mut tied) = (Vec::new(), Vec::new(), false, None);
     for (key, parameters) in SPREADS.iter().zip(spread_names(camera)) {
         let Some((key, entry)) = root.get(&[key])? else { continue };
         let wrong = |problem: String| placed(CameraFileError::new(problem), key, entry);
@@ -156,26 +156,52 @@ fn spreads(root: &Entry, camera: &Camera, notes: &mut Vec<String>) -> Result<Opt
         if sigmas.iter().skip(parameters.len()).any(|sigma| *sigma > 0.0) {
             return Err(wrong(format!("has {} standard deviations, the camera {} such parameters", sigmas.len(), parameters.len())));
         }
-        // The interactive calibration holds the ratio of the focal lengths.
         if parameters[0] == "fx" && matches!(sigmas[..], [0.0, fy, ..] if fy > 0.0) {
-            notes.push("fx has no standard deviation of its own: it was tied to fy".into());
+            match tied_focal(root, camera, sigmas[1])? {
+                Some(sigma) => tied = Some((sigma, sigmas[1])),
+                None => notes.push("fx has no standard deviation, and the flags do not tie it to fy: it is taken to have been held".into()),
+            }
         }
         for (name, sigma) in parameters.into_iter().zip(sigmas).filter(|(_, sigma)| *sigma > 0.0) {
             names.push(name.to_owned());
             variances.push(sigma * sigma);
         }
     }
-    let q = DMatrix::from_diagonal(&DVector::from_vec(variances));
+    let mut q = DMatrix::from_diagonal(&DVector::from_vec(variances));
+    if let Some((fx, fy)) = tied {
+        // Of a ratio that was held the two are one parameter; fy is the first that is named.
+        names.insert(0, "fx".to_owned());
+        q = q.insert_row(0, 0.0).insert_column(0, 0.0);
+        (q[(0, 0)], q[(0, 1)], q[(1, 0)]) = (fx * fx, fx * fy, fx * fy);
+        notes.push("fx has no standard deviation of its own: it was tied to fy, and has fy's times their ratio".into());
+    }
     let covariance = any.then(|| ParameterCovariance::named(names, &q)).transpose();
     covariance.map_err(|problem| CameraFileError::new(problem).of(SPREADS[0]))
 }
 
-/// The standard deviations of a camera by their keys, one after another.
+/// The standard deviation of an fx whose own is zero, for that of fy: by the ratio that was held, as a file says that has `fix_aspect_ratio`, `aspectRatio` or the flag
+/// 2 of `calibrateCamera`, and as it is in one without flags, since nothing else of OpenCV's leaves fy alone free. `None` where flags say otherwise.
+fn tied_focal(root: &Entry, camera: &Camera, fy_sigma: f64) -> Result<Option<f64>, CameraFileError> {
+    const FIX_ASPECT_RATIO: u32 = 2;
+    let Camera::OpenCv(OpenCv { fx, fy, .. }) = *camera else { return Ok(None) };
+    let holds = |name: &str| Ok::<_, CameraFileError>(root.key(name)?.and_then(|entry| entry.number().ok()));
+    let stated = holds("fix_aspect_ratio")?.or(holds("aspectRatio")?).is_some_and(|ratio| ratio > 0.0);
+    let by_flags = holds("flags")?.is_none_or(|flags| flags as u32 & FIX_ASPECT_RATIO != 0);
+    Ok((stated || by_flags).then_some(fy_sigma * fx / fy))
+}
+
+/// The standard deviations of a camera by their keys, one after another; that of an fx which is tied to fy is zero, as in OpenCV's files.
 pub(super) fn written_spreads(named: &NamedCamera) -> Vec<(&'static str, Vec<f64>)> {
     let Some(covariance) = &named.covariance else { return Vec::new() };
-    let sigma = |name: &str| {
-        let (n, place) = (covariance.parameters.len(), covariance.parameters.iter().position(|own| own == name));
-        place.map_or(0.0, |place| covariance.values[place * n + place].sqrt())
+    let n = covariance.parameters.len();
+    let place = |name: &str| covariance.parameters.iter().position(|own| own == name);
+    let is_tied = place("fx").zip(place("fy")).is_some_and(|(i, j)| {
+        let [xx, xy, yy] = [(i, i), (i, j), (j, j)].map(|(row, column)| covariance.values[row * n + column]);
+        xy > 0.0 && (xy * xy - xx * yy).abs() <= 1e-12 * xx * yy
+    });
+    let sigma = |name: &str| match place(name) {
+        Some(place) if !(is_tied && name == "fx") => covariance.values[place * n + place].sqrt(),
+        _ => 0.0,
     };
     let rows =
         SPREADS.into_iter().zip(spread_names(&named.camera)).map(|(key, names)| (key, names.into_iter().map(sigma).collect::<Vec<_>>()));

@@ -30,7 +30,7 @@ pub struct Reading {
     /// Order of the decentring coefficients of Pix4D, PhotoScan before 1.2 and Lens, which public sources do not settle [default: opencv]
     #[arg(long, value_enum, value_name = "ORDER")]
     order: Option<Order>,
-    /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG, Theia, Gyroflow and USD [default: centre], which public sources do not settle
+    /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG, Theia, Gyroflow, USD, DJI and Qualisys [default: centre], which public sources do not settle
     #[arg(long, value_enum, value_name = "ORIGIN")]
     origin: Option<Origin>,
     /// Distortion model of RealityScan's CSV, which does not say it [default: brown, where the coefficients can be no other's]

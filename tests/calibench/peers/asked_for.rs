@@ -1,15 +1,18 @@
 //! Files that people ask for, by the tools whose they are: ours projected by them, theirs by us.
 
-#![cfg_attr(not(all(peer_opencv, peer_anipose, peer_caliscope, peer_lensfun, peer_usd, peer_hugin)), allow(dead_code, unused_imports))]
+#![cfg_attr(
+    not(all(peer_opencv, peer_anipose, peer_caliscope, peer_lensfun, peer_usd, peer_hugin, peer_mrcal)),
+    allow(dead_code, unused_imports)
+)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use calibench_cameras::{ReadOptions, read_camera_with};
-use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, ImageSize, LensProjection, Omni, OpenCvFisheye, PtLens, Ray};
+use calibench_cameras::{ReadOptions, format_named, read_camera_with, write_camera};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, LensProjection, Omni, OpenCv, OpenCvFisheye, PtLens, Ray};
+use calibench_model::{NamedCamera, PixelPoint};
 
-use super::{SIZE, agrees, answered, asked, fisheye, opencv, own, radial};
+use super::{SIZE, SYSTEM, agrees, answered, asked, compare, fisheye, opencv, own, radial};
 
 /// The camera that a tool wrote pictures the points where the tool does, within `tolerance`, px.
 fn reads(tool: &str, ending: &str, tolerance: f64) {
@@ -92,6 +95,23 @@ fn lensfun_loads_its_data_base() {
     let round = OpenCvFisheye { size: SIZE, fx: 1400.0, fy: 1400.0, cx: 603.5, cy: 447.25, skew: 0.0, k: [-0.02, 0.003, 0.0, 0.0] };
     // It holds floats of 32 bits.
     agrees(&own(), "lensfun", ("lensfun", "xml"), &[lenses(), vec![radial(2), round.into()]].concat(), 1e-3);
+}
+
+/// Lenses with the image plane's axis, and tilted against it about one axis and about both.
+#[test]
+#[cfg_attr(not(peer_mrcal), ignore = "no mrcal")]
+fn mrcal_reads_cahvor_and_projects_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("camera.cahvor");
+    for [k1, k2, tx, ty] in
+        [[0.0; 4], [-0.08, 0.02, 0.0, 0.0], [-0.08, 0.02, 0.01, 0.0], [-0.08, 0.02, 0.0, -0.03], [-0.08, 0.02, 0.2, -0.1]]
+    {
+        let mut distortion = [0.0; 14];
+        [distortion[0], distortion[1], distortion[12], distortion[13]] = [k1, k2, tx, ty];
+        let camera = OpenCv { size: SIZE, fx: 1400.0, fy: 1403.0, cx: 610.0, cy: 440.0, distortion, coefficients: 14 }.into();
+        write_camera(&file, format_named("cahvor").unwrap(), &[NamedCamera::new("", camera)]).unwrap();
+        compare(SYSTEM, "cahvor", &file, &camera, 1e-6);
+    }
 }
 
 /// Lenses of the data base that lensfunpy brings, by lensfun and by ours.

@@ -1,4 +1,4 @@
-//! lensfun's data base of lenses: distortion by ptlens, poly3 and poly5 for each focal length of a lens, whose images have any size.
+//! lensfun's data base of lenses: distortion by ptlens, poly3, poly5 and Adobe's model for each focal length of a lens, whose images have any size.
 
 use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, LensProjection, OpenCvFisheye, PtLens, pt_lens};
 use calibench_model::convert::Target;
@@ -17,9 +17,9 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "lensfun",
     versions: "data base versions 1 and 2, lensfun 0.3",
     extension: "xml",
-    words: "lensdatabase lens maker model mount cropfactor calibration distortion focal ptlens poly3 poly5 tca vignetting camera",
+    words: "lensdatabase lens maker model mount cropfactor calibration distortion focal ptlens poly3 poly5 acm tca vignetting camera",
     verified: Some(
-        "lensfun 0.3.4 (lensfunpy 1.18.0) loads what is written and pictures alike to 1e-3 px, its single precision, asked pixel by pixel; so do lenses of its data base",
+        "lensfun 0.3.4 (lensfunpy 1.18.0) loads what is written and pictures alike to 1e-3 px, its single precision, asked pixel by pixel; so do lenses of its data base. acm, which 0.3.4 refuses, is only read, and unverified",
     ),
     many: true,
     states_size: false,
@@ -176,13 +176,14 @@ fn camera(
         "ptlens" => &["a", "b", "c"],
         "poly3" => &["k1"],
         "poly5" => &["k1", "k2"],
+        "acm" => &["k1", "k2", "k3", "k4", "k5"],
         other => {
-            let problem = format!("`{}` is not known here; expected ptlens, poly3, poly5 or none", shortened(other));
+            let problem = format!("`{}` is not known here; expected ptlens, poly3, poly5, acm or none", shortened(other));
             return Err(at(CameraFileError::new(problem)).of("model"));
         }
     };
     let attributes = node.attributes().map(|attribute| (attribute.name(), ()));
-    let notes = options.of_lens(attributes, &[names, &["model", "focal", "real-focal"]].concat(), |(), error| {
+    let mut notes = options.of_lens(attributes, &[names, &["model", "focal", "real-focal"]].concat(), |(), error| {
         at(error.clone()).of(error.element.unwrap_or_default())
     })?;
     let mm = number(node, "focal")?.ok_or_else(|| at(CameraFileError::new("has no attribute `focal`")))?;
@@ -211,6 +212,22 @@ fn camera(
         ("poly5", LensProjection::Equidistant) => {
             let k = [v("k1")? * s * s, v("k2")? * s.powi(4), 0.0, 0.0];
             OpenCvFisheye { size, fx: focal, fy: focal, cx, cy, skew: 0.0, k }.into()
+        }
+        ("acm", _) => {
+            notes.push("unverified: acm: formulas after the source of lensfun 0.3.95; 0.3.4, which was asked, refuses it".into());
+            // In units of the focal length; k4 stands beside y, k5 beside x.
+            let ([k1, k2, k3], [p1, p2]) = ([v("k1")?, v("k2")?, v("k3")?], [v("k4")?, v("k5")?]);
+            let plain = Brown { k: [k1, k2, k3, 0.0], p1, p2, ..Brown::plain(size, [focal, focal, cx, cy]) };
+            match projection {
+                LensProjection::Rectilinear => plain.camera(),
+                LensProjection::Equidistant if !plain.has_tangential() => {
+                    OpenCvFisheye { size, fx: focal, fy: focal, cx, cy, skew: 0.0, k: plain.k }.into()
+                }
+                _ => {
+                    let problem = "acm on this type of lens is no model here; expected rectilinear, or fisheye without k4 and k5";
+                    return Err(at(CameraFileError::new(problem)).of("model"));
+                }
+            }
         }
         ("poly5", _) => {
             let problem = "poly5 on this type of lens is no model here; expected rectilinear or fisheye, or ptlens";

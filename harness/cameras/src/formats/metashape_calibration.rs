@@ -18,7 +18,11 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     ),
     many: false,
     states_size: true,
-    recognise: |source| xml::root_is(source.xml.as_ref(), "calibration"),
+    recognise: |source| {
+        // Qualisys' calibrations have that root too, around their cameras.
+        let rig = source.xml.as_ref().is_some_and(|document| document.root_element().children().any(|child| child.has_tag_name("cameras")));
+        if rig { Err("`calibration` holds `cameras`".into()) } else { xml::root_is(source.xml.as_ref(), "calibration") }
+    },
     read,
     write: Some(write),
     ..PLAIN

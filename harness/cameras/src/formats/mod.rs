@@ -5,10 +5,12 @@ mod bal;
 mod basalt;
 mod bentley;
 mod bundler;
+mod cahvor;
 mod caltech;
 mod camodocal;
 pub(super) mod colmap;
 pub(super) mod colmap_bin;
+mod dji;
 mod gyroflow;
 mod kalibr;
 mod kapture;
@@ -20,6 +22,8 @@ mod micmac;
 pub(super) mod mrcal;
 mod nerfstudio;
 mod numpy;
+mod nvm;
+mod ocam;
 mod opencv_json;
 mod opencv_xml;
 mod opencv_yaml;
@@ -32,6 +36,7 @@ mod pix4d_cam;
 mod pix4d_inpho;
 mod pix4d_parameters;
 pub mod pix4d_pmatrix;
+mod qualisys;
 mod reality_capture;
 mod reality_scan_csv;
 mod ros;
@@ -87,6 +92,11 @@ pub static FORMATS: &[&CameraFormat] = &[
     &gyroflow::FORMAT,
     &matlab::FORMAT,
     &usd::FORMAT,
+    &ocam::FORMAT,
+    &nvm::FORMAT,
+    &dji::FORMAT,
+    &cahvor::FORMAT,
+    &qualisys::FORMAT,
 ];
 
 /// The format called `name`.

@@ -3,8 +3,8 @@
 use calibench_model::PixelPoint;
 use calibench_model::camera::{
     Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize,
-    LensProjection, MicMac, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
-    TangentialOrder,
+    LensProjection, MicMac, Ocam, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye,
+    SixPrismFisheye, TangentialOrder,
 };
 use calibench_model::convert::{ConvertOptions, Method, WARNING_PX};
 
@@ -95,6 +95,7 @@ pub(super) fn all_models() -> Vec<Camera> {
             s: [1e-4, -2e-4, 2e-4, 1e-4],
         }
         .into(),
+        Ocam { size: SIZE, cx, cy, c: 1.002, d: 1e-3, e: -2e-3, a: [-420.0, 0.0, 7e-4, -1e-7, 4e-10, 0.0, 0.0] }.into(),
         MicMac {
             size: SIZE,
             f: 1400.0,

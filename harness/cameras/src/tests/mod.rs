@@ -2,6 +2,7 @@
 
 mod anipose;
 mod any_model;
+mod asked_for;
 mod colmap_files;
 mod encodings;
 mod files;

@@ -147,7 +147,7 @@ fn a_data_base_is_read_with_a_camera_for_each_focal_length() {
     assert!(read(&text).unwrap_err().contains("does not state the size"));
     for (from, to, expected) in [
         ("a=\"0.01\"", "a=\"x\"", "f:11:13, `a`: expected a finite number"),
-        ("model=\"poly3\"", "model=\"acm\"", "f:12:13, `model`: `acm` is not known here; expected ptlens, poly3, poly5 or none"),
+        ("model=\"poly3\"", "model=\"fov1\"", "f:12:13, `model`: `fov1` is not known here; expected ptlens, poly3, poly5, acm or none"),
         ("focal=\"55\"", "focal=\"0\"", "f:12:13, `focal`: expected a number above zero, found 0"),
         ("k1=\"0.004\"", "k1=\"0.004\" k9=\"1\"", "f:12:13, `k9`: is no key that is known of a lens"),
         ("3:2", "3:x", "f:2:5, `aspect-ratio`: expected 3:2 or 1.5"),

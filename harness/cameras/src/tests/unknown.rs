@@ -36,6 +36,27 @@ fn an_unknown_file_gets_one_line_with_the_two_nearest_readers() {
     }
 }
 
+/// Files that lack what makes them one of a format are near it.
+#[test]
+fn what_is_nearly_a_file_of_a_format_is_near_it() {
+    for (text, near) in [
+        (
+            "<calibration><cameras><camera serial=\"1\"><intrinsic centerPointU=\"1\" focallength=\"9\"/></camera></cameras></calibration>",
+            "qualisys (no `intrinsic` with",
+        ),
+        ("Model = CAHVOR = perspective\nDimensions = 640 480\nC = 1 2 3\nA = 0 0 1\nH = 500 0 320\n", "cahvor (no `C = `, "),
+        (
+            "polynomial coefficients, DIRECT mapping function\n5 -200 0 0 0 0\ncenter\n240 320\naffine parameters\n1 0 0\n",
+            "ocam (no `#polynomial",
+        ),
+        ("NVM_V2\nFixedK 1 2 3 4 5\n", "nvm (no `NVM_V3`)"),
+        ("CalibratedFocalLength = 3666\nDewarpFlag = 0\nGimbalYawDegree = 3\n", "dji (no `DewarpData`)"),
+    ] {
+        let error = read(text).unwrap_err();
+        assert!(error.contains(near) && !error.contains('\n'), "{near}: {error}");
+    }
+}
+
 #[test]
 fn bytes_are_called_what_they_are() {
     for (bytes, expected) in [

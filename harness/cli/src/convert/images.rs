@@ -41,7 +41,7 @@ impl Convert {
         let OtherImages { crop, scale, binned, turn } = self.images;
         let own = source.camera.size();
         // Of a file that states no size it is that of its images.
-        let is_new = |size: &ImageSize| *size != own || (crop.is_some() && self.reading.states_size(&self.file));
+        let is_new = |size: &ImageSize| *size != own || (crop.is_some() && self.reading.states_size(self.file()));
         let size = self.reading.size().filter(is_new).map(Scaling::Size);
         let others = scale.map(Scaling::Times).or(binned.map(Scaling::Binned));
         if size.is_some() && others.is_some() {

@@ -27,9 +27,10 @@ struct Words {
 impl Convert {
     /// Converts a list to a list; false where one of them is none, and nothing is done.
     pub(super) fn in_pieces(&self, to: &CamerasFile, quiet: bool) -> Result<bool, Failure> {
-        let format = self.to.as_deref().and_then(format_named).filter(|format| self.all && format.is_written_in_pieces());
+        let format =
+            self.to.as_deref().and_then(format_named).filter(|format| self.all && self.files.len() == 1 && format.is_written_in_pieces());
         let Some(format) = format.filter(|_| !matches!(to, CamerasFile::Folder(_))) else { return Ok(false) };
-        let Some(list) = self.reading.list(&self.file)? else { return Ok(false) };
+        let Some(list) = self.reading.list(self.file())? else { return Ok(false) };
         let mut words = Words::default();
         let place = if let CamerasFile::File(file) = to { format!("-o {}: ", file.path().display()) } else { String::new() };
         let mut write = |output: &mut dyn Write| self.write_list(&list, (format, &place), output, &mut words, quiet);

@@ -4,6 +4,7 @@ mod file;
 mod images;
 mod list;
 mod said;
+mod several;
 
 use std::path::PathBuf;
 
@@ -40,8 +41,9 @@ pub const SIZE: &str = "The same camera in images of this size, resampled; of a 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Convert {
-    /// A camera file of any known format, found by content
-    file: PathBuf,
+    /// Camera files of any known format, found by content; the cameras of several become one file, or the folder that -o names
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
     /// Convention or tool to convert to; `list conventions` lists them [default, in other images: that of the file]
     #[arg(long, value_name = "CONVENTION", required_unless_present_any = ["crop", "size", "scale", "binned", "turn"])]
     to: Option<String>,
@@ -94,16 +96,16 @@ pub fn region(radius: Option<f64>) -> Region {
 impl Convert {
     pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
         self.reading.allow_other_size();
-        let inputs = inputs_of([&self.file]);
+        let inputs = inputs_of(&self.files);
         let cameras_file = self.cameras_file(&inputs)?;
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         // An answer tells every camera apart, and so has them all in memory.
         if !self.answered.json && self.in_pieces(&cameras_file, context.quiet)? {
             return Ok(());
         }
-        let (read, sources) = self.sources()?;
+        let sources = self.sources(context.quiet)?;
         let many = sources.len() > 1;
-        let one = |(index, source): (usize, NamedCamera)| {
+        let one = |(index, (read, source)): (usize, (&'static CameraFormat, NamedCamera))| {
             if many {
                 self.one_of_many(index, (read, &source), many, context.quiet)
             } else {
@@ -134,18 +136,9 @@ impl Convert {
         if doubtful { Err(Failure::Doubt) } else { Ok(()) }
     }
 
-    /// The cameras to convert, and the format of their file.
-    fn sources(&self) -> Result<(&'static CameraFormat, Vec<NamedCamera>), Failure> {
-        if self.all {
-            return self.reading.all(&self.file);
-        }
-        let opened = self.reading.opened(&self.file)?;
-        Ok((opened.format(), vec![self.reading.one_of(&self.file, opened)?]))
-    }
-
     fn answer(&self, format: &CameraFormat, cameras: &[NamedCamera], found: Vec<(Found, Option<Reframing>)>) -> Result<(), Failure> {
         answer(&ConversionAnswer {
-            file: self.file.display().to_string(),
+            file: self.named_files(),
             to: format.name.to_owned(),
             unverified: self.reading.open_point(format),
             output: self.output.as_ref().map(|path| path.display().to_string()),
@@ -161,7 +154,7 @@ impl Convert {
     fn cameras_file(&self, inputs: &Inputs) -> Result<CamerasFile, Failure> {
         Ok(match &self.output {
             None => CamerasFile::Standard,
-            Some(path) if self.all && !output::is_camera_name(path) => {
+            Some(path) if self.takes_all() && !output::is_camera_name(path) => {
                 CamerasFile::Folder(output::folder("-o", path, inputs, ("convert", None))?)
             }
             Some(path) => CamerasFile::File(output::camera("-o", path, true, inputs)?),

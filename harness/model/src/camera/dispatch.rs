@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
-    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, Ray, Reframe, Resampling,
-    SixPrismFisheye, Slopes, Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye,
-    photogrammetric, pix4d, prism_fisheye, pt_lens, rad_tan_prism_fisheye, six_prism_fisheye, tool_conventions,
+    NoCounterpart, Ocam, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, Ray, Reframe,
+    Resampling, SixPrismFisheye, Slopes, Turn, agisoft, agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, ocam, omni,
+    opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, pt_lens, rad_tan_prism_fisheye, six_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;
 
@@ -45,6 +45,8 @@ pub enum Camera {
     PtLens(PtLens),
     /// Fisheye with six radial coefficients, decentring and thin prism.
     SixPrismFisheye(SixPrismFisheye),
+    /// Scaramuzza's omnidirectional camera.
+    Ocam(Ocam),
 }
 
 macro_rules! each {
@@ -66,6 +68,7 @@ macro_rules! each {
             Camera::MicMac($model) => $work,
             Camera::PtLens($model) => $work,
             Camera::SixPrismFisheye($model) => $work,
+            Camera::Ocam($model) => $work,
         }
     };
 }
@@ -92,6 +95,7 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &micmac::CONVENTION,
         &pt_lens::CONVENTION,
         &six_prism_fisheye::CONVENTION,
+        &ocam::CONVENTION,
         &tool_conventions::COLMAP,
         &tool_conventions::KAPTURE,
         &tool_conventions::ROS,
@@ -111,6 +115,10 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &tool_conventions::GYROFLOW,
         &tool_conventions::MATLAB,
         &tool_conventions::USD,
+        &tool_conventions::NVM,
+        &tool_conventions::DJI,
+        &tool_conventions::CAHVOR,
+        &tool_conventions::QUALISYS,
     ]
 }
 
@@ -134,6 +142,7 @@ impl Camera {
             Self::MicMac(_) => &micmac::CONVENTION,
             Self::PtLens(_) => &pt_lens::CONVENTION,
             Self::SixPrismFisheye(_) => &six_prism_fisheye::CONVENTION,
+            Self::Ocam(_) => &ocam::CONVENTION,
         }
     }
 }
@@ -224,7 +233,8 @@ from!(
     RadTanPrismFisheye,
     MicMac,
     PtLens,
-    SixPrismFisheye
+    SixPrismFisheye,
+    Ocam
 );
 
 #[cfg(test)]

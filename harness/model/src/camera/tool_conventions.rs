@@ -1,6 +1,6 @@
 //! Conventions of tools whose cameras are models that are there already: what their files mean by the same numbers.
 
-use super::convention::{Convention, PixelOrigin, TangentialOrder, Verification};
+use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification};
 use super::{agisoft, opencv, photogrammetric};
 
 /// COLMAP.
@@ -241,6 +241,61 @@ pub const CALTECH: Convention = Convention {
     source: "Bouguet, Camera Calibration Toolbox for Matlab, Description of the calibration parameters: the first pixel's centre is (0, 0)",
     verification: Verification::Unverified(
         "formulas after the toolbox's page, from which OpenCV's are taken; no numbers of it were at hand",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// VisualSFM.
+pub const NVM: Convention = Convention {
+    name: "nvm",
+    about: "VisualSFM NVM: f, one radial coefficient that corrects measured coordinates in units of f, principal point in the centre of the frame",
+    version: "NVM_V3",
+    direction: Direction::MeasuredToIdeal,
+    pixel_origin: PixelOrigin::FrameCentre,
+    principal_point_from: PixelOrigin::FrameCentre,
+    order: TangentialOrder::Without,
+    normalisation: "divided by f, px",
+    source: "VisualSFM's documentation, NVM format; its author's bundle adjustment, Multicore Bundle Adjustment (Wu et al. 2011), which reads the files",
+    verification: Verification::Unverified(
+        "formulas after Multicore Bundle Adjustment; that the centre of the frame is meant and not the centre of its middle pixel is assumed; no numbers of the tool were at hand",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// DJI.
+pub const DJI: Convention = Convention {
+    name: "dji",
+    about: "DJI DewarpData: fx, fy, principal point from the optical centre, k1, k2, p1, p2, k3",
+    version: "XMP of Phantom 4 RTK and Multispectral, Mavic 3 Enterprise and Multispectral",
+    normalisation: "divided by the focal lengths, px; the principal point counts from CalibratedOpticalCenter, or half of the size",
+    source: "DJI, P4 Multispectral Image Processing Guide and Mavic 3M Image Processing Guide: OpenCV's model by name",
+    verification: Verification::Unverified(
+        "OpenCV's model by name; what (0, 0) is it does not say: the centre of the first pixel is assumed, as OpenCV has it; no numbers of the tool were at hand",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// JPL's CAHVOR.
+pub const CAHVOR: Convention = Convention {
+    name: "cahvor",
+    about: "CAHV, CAHVOR: centre, axis, columns, rows, axis of the lens, r0 to r2, as vectors in the world",
+    version: ".cahvor, labels of PDS3 and VICAR",
+    order: TangentialOrder::Without,
+    normalisation: "divided by the distance along the axis of the lens, O",
+    source: "Yakimovsky and Cunningham 1978; Gennery 2006, \"Generalized Camera Calibration Including Fish-Eye Lenses\"",
+    verification: Verification::Verified("mrcal 2.2 projects alike by the files, to 1e-6 px; labels by none"),
+    ..opencv::CONVENTION
+};
+
+/// Qualisys.
+pub const QUALISYS: Convention = Convention {
+    name: "qualisys",
+    about: "Qualisys Track Manager: focal lengths and centre in 64ths of a pixel, radialDistortion1 to 3, tangentalDistortion1, 2",
+    version: "calibration XML, real-time protocol 1.20 and later",
+    normalisation: "divided by the focal lengths, 64ths of px",
+    source: "Qualisys, QTM RT Server Protocol Documentation, Calibration; the readers of Pose2Sim and of its own SDK, by the names",
+    verification: Verification::Unverified(
+        "OpenCV's order of coefficients as Pose2Sim takes it; what (0, 0) is it does not say: the centre of the first pixel is assumed; no numbers of the tool were at hand",
     ),
     ..opencv::CONVENTION
 };

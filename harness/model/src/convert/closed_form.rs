@@ -86,6 +86,7 @@ pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> boo
         | Target::RadTanPrismFisheye
         | Target::SixPrismFisheye { .. }
         | Target::PtLens { .. }
+        | Target::Ocam { .. }
         | Target::MetashapeFisheye { .. } => false,
     }
 }

@@ -4,8 +4,8 @@ use super::ConvertError;
 use super::brown::BrownForm;
 use crate::camera::{
     Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize,
-    LensProjection, MicMac, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
-    TangentialOrder,
+    LensProjection, MicMac, Ocam, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye,
+    SixPrismFisheye, TangentialOrder,
 };
 
 /// A convention with its shape. Terms that the shape leaves out are zero.
@@ -86,6 +86,11 @@ pub enum Target {
         /// How the lens pictures angles.
         projection: LensProjection,
     },
+    /// Scaramuzza's omnidirectional camera, without a1.
+    Ocam {
+        /// Degree of the polynomial: 2 to 6.
+        degree: usize,
+    },
     /// Metashape's fisheye.
     MetashapeFisheye {
         /// How it pictures angles.
@@ -135,6 +140,7 @@ impl Target {
             Self::Agisoft { tangential: 1, .. } => "p1 without p2",
             Self::Pix4d { sensor_width_mm, .. } if !positive(sensor_width_mm) => "the width of the sensor is not positive",
             Self::Pix4d { order: TangentialOrder::Without, .. } => "the order of T1 and T2 is open",
+            Self::Ocam { degree: 0..2 | 7.. } => "the degree of the polynomial is 2 to 6",
             Self::Centred { radial: 5.. } | Self::MicMac { radial: 6.., .. } => "more radial coefficients than the model has",
             _ => return Ok(()),
         };
@@ -169,6 +175,7 @@ impl Target {
                 SixPrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()
             }
             Self::PtLens { projection } => PtLens { size, projection, f: 1.0, cx: 0.0, cy: 0.0, a: 0.0, b: 0.0, c: 0.0 }.into(),
+            Self::Ocam { .. } => Ocam::round(size, [0.0; 2], [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).into(),
             Self::MetashapeFisheye { projection } => {
                 AgisoftFisheye { size, projection, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 2] }.into()
             }
@@ -195,6 +202,10 @@ impl Target {
             Self::Ebner { .. } => [&K[..], &P[..], &B[..]].concat(),
             Self::Agisoft { radial, tangential, affinity: b, .. } => [&K[radial..], &P[tangential..], affinity(b)].concat(),
             Self::OpenCvFisheye => vec!["skew", "alpha"],
+            Self::Ocam { degree } => {
+                const A: [&str; 7] = ["a1", "a0", "a2", "a3", "a4", "a5", "a6"];
+                [&A[..1], &A[degree + 1..]].concat()
+            }
             Self::Division => vec!["alpha"],
             Self::Centred { radial } => [&["cx", "cy"], &K[radial..], &P[..], &B[..]].concat(),
             Self::SixPrismFisheye { prism: false } => vec!["s0", "s1", "s2", "s3"],

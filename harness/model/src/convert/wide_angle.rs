@@ -4,7 +4,7 @@ use super::Target;
 use super::brown::BrownForm;
 use crate::PixelPoint;
 use crate::camera::{
-    AgisoftFisheye, Camera, DoubleSphere, Eucm, FisheyeProjection, Fov, ImageSize, LensProjection, Omni, OpenCv, OpenCvFisheye,
+    AgisoftFisheye, Camera, DoubleSphere, Eucm, FisheyeProjection, Fov, ImageSize, LensProjection, Ocam, Omni, OpenCv, OpenCvFisheye,
     PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye,
 };
 
@@ -22,6 +22,9 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
         (Camera::SixPrismFisheye(from), Target::SixPrismFisheye { prism }) => (*prism || from.s == [0.0; 4]).then_some(*source),
         (_, Target::SixPrismFisheye { prism }) => to_six(source).filter(|six| *prism || six.s == [0.0; 4]).map(Camera::from),
         (Camera::SixPrismFisheye(from), _) => exact(&of_six(from)?.into(), target),
+        // A polynomial of any degree is one.
+        (Camera::Ocam(_), Target::Ocam { .. }) => Some(*source),
+        (_, Target::Ocam { .. }) => to_ocam(source),
         (Camera::PtLens(from), Target::PtLens { projection }) => (from.projection == *projection).then_some(*source),
         (_, Target::PtLens { projection }) => to_pt_lens(source, *projection),
         (Camera::PtLens(from), Target::OpenCvFisheye) => of_pt_lens(from).filter(|camera| matches!(camera, Camera::OpenCvFisheye(_))),
@@ -36,6 +39,13 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
         }
         _ => from_unified(&unified(source)?, target),
     }
+}
+
+/// The division model, with the stereographic projection and the pinhole, as a polynomial without higher terms.
+fn to_ocam(source: &Camera) -> Option<Camera> {
+    let Camera::Eucm(Eucm { size, fx, fy, cx, cy, beta, .. }) = exact(source, &Target::Division)? else { return None };
+    let a = [-fx, 0.0, beta / (4.0 * fx), 0.0, 0.0, 0.0, 0.0];
+    Some(Ocam { c: fy / fx, ..Ocam::round(size, [cx, cy], a) }.into())
 }
 
 fn with_prism(from: &OpenCvFisheye) -> Option<Camera> {
@@ -208,6 +218,10 @@ pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
             let f = 0.5 * (fx + fy) / PtLens::slope_on_axis(*projection);
             vec![PtLens { size, projection: *projection, f, cx, cy, a: 0.0, b: 0.0, c: 0.0 }.into()]
         }
+        // Equidistant to its second term, stereographic, the pinhole.
+        Target::Ocam { .. } => [1.0 / 3.0, 0.25, 0.0]
+            .map(|bend| Ocam { c: fy / fx, ..Ocam::round(size, [cx, cy], [-fx, 0.0, bend / fx, 0.0, 0.0, 0.0, 0.0]) }.into())
+            .into(),
         Target::RadTanPrismFisheye => {
             vec![RadTanPrismFisheye { size, fx, fy, cx, cy, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()]
         }

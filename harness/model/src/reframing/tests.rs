@@ -3,14 +3,14 @@
 use super::*;
 use crate::NamedCamera;
 use crate::camera::{
-    Agisoft, AgisoftFisheye, AgisoftVersion, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, LensProjection, MicMac, Omni,
-    OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, LensProjection, MicMac, Ocam,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, PtLens, RadTanPrismFisheye, SixPrismFisheye, TangentialOrder,
 };
 use crate::named_camera::{ParameterCovariance, Pose};
 
 const SIZE: ImageSize = ImageSize { width: 1201, height: 900 };
 /// How many models there are: [`place`] names them.
-const MODELS: usize = 16;
+const MODELS: usize = 17;
 
 /// The place of a model. A new one has to be named here, and then to stand among [`all`].
 fn place(camera: &Camera) -> usize {
@@ -31,6 +31,7 @@ fn place(camera: &Camera) -> usize {
         Camera::MicMac(_) => 13,
         Camera::PtLens(_) => 14,
         Camera::SixPrismFisheye(_) => 15,
+        Camera::Ocam(_) => 16,
     }
 }
 
@@ -75,6 +76,7 @@ fn all() -> Vec<Camera> {
         .into(),
         PrismFisheye { size, fx, fy, cx, cy, k, p, s: [1e-4, -2e-4] }.into(),
         RadTanPrismFisheye { size, fx, fy, cx, cy, k: [-0.01, 0.002, 0.0, 0.0, 1e-4, 0.0], p, s: [1e-4, -2e-4, 2e-4, 1e-4] }.into(),
+        Ocam { size, cx, cy, c: 1.01, d: 0.004, e: -0.003, a: [-420.0, 0.01, 7e-4, -1e-7, 4e-10, 1e-13, -1e-16] }.into(),
         MicMac {
             size,
             f: 1400.0,

@@ -11,7 +11,7 @@ use super::{Answer, CameraAnswer, Size, Sizes};
 /// Cameras in another convention.
 #[derive(Serialize, JsonSchema)]
 pub struct ConversionAnswer {
-    /// The file that was read, as it was named.
+    /// The file that was read, as it was named; several with a comma between them.
     pub file: String,
     /// Name of the format that the cameras are converted to.
     pub to: String,
