@@ -50,7 +50,7 @@ fn several_files_become_one() {
     assert_eq!(
         std::fs::read_dir(at("each"))
             .unwrap()
-            .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".yaml"))
+            .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".yml"))
             .count(),
         2
     );

@@ -262,7 +262,7 @@ def st_map(path, points):
     return places[rows, columns] - np.dstack([x, y])[rows, columns]
 
 
-TOOLS = {f.__name__: f for f in (colmap, kapture, opencv, numpy_archive, anipose, caliscope, lensfun, usd, hugin, mrcal, ros, theia, bundler, st_map)}
+TOOLS = {f.__name__: f for f in (colmap, kapture, opencv, numpy_archive, anipose, caliscope, lensfun, usd, hugin, mrcal, cahvor, ros, theia, bundler, st_map)}
 
 
 def main():

@@ -1,6 +1,6 @@
 //! The cameras that are converted: one of a file, all of it, or those of several files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calibench_cameras::CameraFormat;
 use calibench_cameras::joined::{Joined, joined};
@@ -52,8 +52,7 @@ impl Convert {
         }
         let read: Vec<_> = self.files.iter().map(|file| self.reading.all(file)).collect::<Result<_, Failure>>()?;
         let formats: Vec<_> = read.iter().flat_map(|(format, cameras)| cameras.iter().map(|_| *format)).collect();
-        let Joined { cameras, poses } =
-            joined(self.files.iter().map(|file| file.as_path()).zip(read.into_iter().map(|(_, cameras)| cameras)));
+        let Joined { cameras, poses } = joined(self.files.iter().map(PathBuf::as_path).zip(read.into_iter().map(|(_, cameras)| cameras)));
         if !quiet {
             say!("{}", escape::name(&poses));
         }

@@ -16,14 +16,13 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
         | (Camera::Fov(_), Target::Fov)
         | (Camera::PrismFisheye(_), Target::PrismFisheye)
         | (Camera::RadTanPrismFisheye(_), Target::RadTanPrismFisheye)
+        | (Camera::Ocam(_), Target::Ocam { .. })
         | (Camera::Eucm(Eucm { alpha: 0.5, .. }), Target::Division) => Some(*source),
         // Tools bound beta from below by zero.
         (Camera::Eucm(from), Target::Eucm) if from.beta > 0.0 => Some(*source),
         (Camera::SixPrismFisheye(from), Target::SixPrismFisheye { prism }) => (*prism || from.s == [0.0; 4]).then_some(*source),
         (_, Target::SixPrismFisheye { prism }) => to_six(source).filter(|six| *prism || six.s == [0.0; 4]).map(Camera::from),
         (Camera::SixPrismFisheye(from), _) => exact(&of_six(from)?.into(), target),
-        // A polynomial of any degree is one.
-        (Camera::Ocam(_), Target::Ocam { .. }) => Some(*source),
         (_, Target::Ocam { .. }) => to_ocam(source),
         (Camera::PtLens(from), Target::PtLens { projection }) => (from.projection == *projection).then_some(*source),
         (_, Target::PtLens { projection }) => to_pt_lens(source, *projection),
