@@ -18,7 +18,7 @@ pub struct FreeNetworkWire {
     pub noise_px: Sigma,
     /// The standard deviation of an image coordinate that the adjustment is told, px. Default: `noise_px`.
     pub sigma_px: Option<Sigma>,
-    /// Between how many pairs of targets the error of the length is looked at. Default 10; 0 without a [[distance]], since nothing tells the scale.
+    /// Between how many pairs of targets the error of the length is looked at. Default 10; 0 without a `[[distance]]`, since nothing tells the scale.
     pub lengths: Option<CountOrNone>,
 }
 
