@@ -9,6 +9,7 @@ use calibench_frames::{ALIKE, Choice, Place, Raw, Sequence, Source, USUAL, Watch
 use calibench_images::{Foreign, encode_png, write_png};
 use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
+use calibench_photographs::Reader;
 use clap::Args;
 use tempfile::TempDir;
 
@@ -77,7 +78,7 @@ impl Frames {
         let kept = kept.map(|path| output::folder("--save-frames", path, &inputs_of(&photos), (wanted.command, None))).transpose()?;
         let own: Vec<PathBuf> = photos.iter().filter(|path| !videos.contains(path)).cloned().collect();
         let reader = (!own.is_empty()).then(|| wanted.read.of_sequence(&own, wanted.only_size)).transpose()?;
-        let read: HashSet<&PathBuf> = reader.iter().flat_map(|reader| reader.photos()).collect();
+        let read: HashSet<&PathBuf> = reader.iter().flat_map(Reader::photos).collect();
         let source = |path: &PathBuf| if videos.contains(path) { Source::Video(path.clone()) } else { Source::Photo(path.clone()) };
         let as_stored = wanted.read.is_as_stored();
         let mut sequence = Sequence::of(photos.iter().filter(|path| videos.contains(path) || read.contains(path)).map(source), as_stored);

@@ -31,7 +31,7 @@ fn at_point(image: &Image, (x, y): (f64, f64), affine: &Affine) -> Option<f64> {
     let range = |at: f64, side: usize| {
         let first = (at - reach).ceil().max(1.0);
         let last = (at + reach).floor().min(side as f64 - 2.0);
-        (first <= last).then(|| first as usize..=last as usize)
+        (first <= last).then_some(first as usize..=last as usize)
     };
     let (columns, rows) = (range(x, image.width())?, range(y, image.height())?);
     let across = [0, 1].map(|axis| {

@@ -1,11 +1,13 @@
 //! Frames of a board that a camera without distortion takes while it moves.
 
+use calibench_adjust::image_information;
 use calibench_model::camera::{CameraModel, OpenCv};
 use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Point3, Vector3};
 
 use super::*;
 use crate::Seen;
+use crate::information::PARAMETERS;
 
 const SIZE: ImageSize = ImageSize { width: 640, height: 480 };
 
@@ -14,10 +16,18 @@ fn control() -> Vec<ControlRow> {
     (0..54).map(row).collect()
 }
 
-/// The frame of a camera at `centre`, mm, that looks at `target` on the board.
+fn camera() -> OpenCv {
+    OpenCv { size: SIZE, fx: 600.0, fy: 600.0, cx: 325.0, cy: 235.0, distortion: [0.0; 14], coefficients: 5 }
+}
+
+/// The pose of a camera at `centre`, mm, that looks at `target` on the board.
+fn pose(centre: [f64; 3], target: [f64; 2]) -> Pose {
+    Pose::looking_at(centre.into(), Point3::new(target[0], target[1], 0.0), Vector3::y(), 0.0).unwrap()
+}
+
+/// What is seen from there.
 fn frame(number: usize, centre: [f64; 3], target: [f64; 2], width: f64) -> Frame {
-    let camera = OpenCv { size: SIZE, fx: 600.0, fy: 600.0, cx: 325.0, cy: 235.0, distortion: [0.0; 14], coefficients: 5 };
-    let pose = Pose::looking_at(centre.into(), Point3::new(target[0], target[1], 0.0), Vector3::y(), 0.0).unwrap();
+    let (camera, pose) = (camera(), pose(centre, target));
     let at = |row: &ControlRow| camera.project(pose.ray(&row.position.into())).unwrap();
     let seen = |(target, row): (usize, &ControlRow)| Seen { board: 0, target, at: at(row) };
     Frame { number, seen: control().iter().enumerate().map(seen).collect(), width }
@@ -87,6 +97,18 @@ fn what_is_chosen_tells_more_than_what_is_drawn() {
             .collect();
         assert!(told(&frames, &drawn) < best, "{drawn:?} tells more than {:?}", chosen.chosen);
     }
+}
+
+#[test]
+fn what_a_frame_tells_is_that_of_the_camera_that_took_it() {
+    let mut frames = scene();
+    let (centre, target) = ([150.0, -80.0, 320.0], [20.0, 10.0]);
+    frames.push(frame(300, centre, target, 2.5));
+    let (_, each) = information(&frames.iter().collect::<Vec<_>>(), &control(), SIZE);
+    let points: Vec<Point3<f64>> = control().iter().map(|row| row.position.into()).collect();
+    let expected = image_information(&camera().into(), &PARAMETERS, &pose(centre, target), &points, 0.1).unwrap();
+    let found = each.last().unwrap();
+    assert!((found - &expected).norm() < 1e-3 * expected.norm(), "{found} and {expected}");
 }
 
 #[test]
