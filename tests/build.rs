@@ -1,5 +1,6 @@
 //! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, `cfg(wide_photographs)`, rigs and free networks as `cfg(rigs)`,
-//! packages of other tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`, Chromium with what drives it as `cfg(browser)`.
+//! packages of other tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`, Chromium with what drives it as `cfg(browser)`, ffmpeg as
+//! `cfg(ffmpeg)`.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,12 @@ fn main() {
     println!("cargo::rustc-check-cfg=cfg(python)");
     if Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
         println!("cargo::rustc-cfg=python");
+    }
+    println!("cargo::rustc-check-cfg=cfg(ffmpeg)");
+    println!("cargo::rerun-if-env-changed=CALIBENCH_FFMPEG");
+    let ffmpeg = env::var_os("CALIBENCH_FFMPEG").unwrap_or_else(|| "ffmpeg".into());
+    if Command::new(ffmpeg).arg("-version").output().is_ok_and(|output| output.status.success()) {
+        println!("cargo::rustc-cfg=ffmpeg");
     }
     python_package();
     browser();

@@ -67,5 +67,6 @@ mod store;
 mod sweeps;
 mod task;
 mod task_photographs;
+mod videos;
 mod vosselman;
 mod zhu;

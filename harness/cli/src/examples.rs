@@ -102,6 +102,7 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "calibrate",
         &[
             ("calibench calibrate photos --board 9x6:25 -o camera.yaml --report page", "from photographs"),
+            ("calibench calibrate clip.mp4 --board 9x6:25 -o camera.yaml", "from the frames of a video that are sharp and tell most"),
             ("calibench calibrate --points points.csv --control control.csv --size 4272x2848 -o camera.yaml", "from points"),
             (
                 "calibench calibrate --points points.csv --distances bars.csv --size 8688x5792 --length 6,8",

@@ -24,6 +24,7 @@ mod detect;
 mod diff;
 mod examples;
 mod failure;
+mod frames;
 mod gated;
 mod groups;
 mod init;

@@ -51,6 +51,17 @@ impl AsRead {
         self.asked(photos, Asked { only_size, one_camera: true, ..Asked::default() })
     }
 
+    /// What reads photographs of a sequence, of which some are then read as those of one camera: says nothing of how.
+    pub fn of_sequence(&self, photos: &[PathBuf], only_size: Option<ImageSize>) -> Result<Reader, Failure> {
+        let asked = Asked { ignore_orientation: self.ignore_orientation, bits: self.bits, only_size, one_camera: true };
+        Reader::of(photos, asked).map_err(of_one_camera)
+    }
+
+    /// Whether pixels stay where the sensor had them.
+    pub const fn is_as_stored(&self) -> bool {
+        self.ignore_orientation
+    }
+
     fn asked(&self, photos: &[PathBuf], asked: Asked) -> Result<Reader, Failure> {
         let asked = Asked { ignore_orientation: self.ignore_orientation, bits: self.bits, ..asked };
         let reader = Reader::of(photos, asked).map_err(of_one_camera)?;

@@ -28,6 +28,17 @@ impl Progress {
         Self { bar: Some(bar), line: None }
     }
 
+    /// Starts a task of which nobody knows how many steps it has.
+    pub fn counting(name: &str, quiet: bool) -> Self {
+        let progress = Self::start(name, 0, quiet);
+        let style = ProgressStyle::with_template("{msg:40} {spinner} {pos}").unwrap_or_else(|_| ProgressStyle::default_spinner());
+        progress.bar.iter().for_each(|bar| {
+            bar.unset_length();
+            bar.set_style(style.clone());
+        });
+        progress
+    }
+
     /// A step is done; from any thread.
     pub fn step(&self) {
         self.bar.iter().for_each(|bar| bar.inc(1));

@@ -20,7 +20,8 @@ use clap::Args;
 
 use super::context::{Context, finder};
 use super::convert::positive;
-use super::photos::{AsRead, with_folders};
+use super::frames::{Frames, Taken, Wanted};
+use super::photos::AsRead;
 use super::reading::Origin;
 use super::{inputs, output, reading};
 use crate::board::{HELP, board_of};
@@ -44,7 +45,7 @@ pub use rig::{patterns, places, rig_names};
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Calibrate {
-    /// Photographs of a board, or a folder of them, in place of --points and --control
+    /// Photographs of a board, a folder of them, or a video, in place of --points and --control
     #[arg(value_name = "PHOTO", requires = "board")]
     photos: Vec<PathBuf>,
     #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_of, help = HELP, requires = "photos")]
@@ -60,6 +61,8 @@ pub struct Calibrate {
     /// Leave out photographs of another size, px
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "photos")]
     only_size: Option<ImageSize>,
+    #[command(flatten)]
+    frames: Frames,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV", required_unless_present_any = ["photos", "reconstruction"], conflicts_with = "photos")]
     points: Option<PathBuf>,
@@ -167,7 +170,8 @@ struct Input {
 
 impl Calibrate {
     pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
-        self.photos = with_folders(&self.photos)?;
+        let taken = self.taken(context)?;
+        self.photos.clone_from(&taken.photos);
         if self.rig.is_asked() {
             return self.run_rig(context);
         }
@@ -177,7 +181,9 @@ impl Calibrate {
         let given = [&self.points, &self.control, &self.approx, &self.distances, &self.poses].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.known.inputs().cloned()).chain(self.cameras.starts()));
         let outputs = self.outputs(&inputs)?;
-        let Input { points, lost, photos, reading, control, is_free, doubts } = self.input(context)?;
+        let Input { points, lost, photos, reading, control, is_free, mut doubts } = self.input(context)?;
+        taken.doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
+        doubts.extend(taken.doubts.iter().cloned());
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
         let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
         let settings = self.settings(&photos, self.eccentricity.or(of_discs.then_some(Discs::Control)))?;
@@ -204,6 +210,20 @@ impl Calibrate {
             if in_doubt || is_certified_in_doubt { Err(Failure::Doubt) } else { Ok(()) }
         })
         .map_err(explained)?
+    }
+
+    /// The photographs, or the frames in the place of them.
+    fn taken(&self, context: &Context<'_>) -> Result<Taken, Failure> {
+        let is_one = !self.cameras.are_several() && !self.rig.is_asked();
+        let board = self.board.filter(|_| is_one);
+        let wanted = Wanted { command: "calibrate", board, each: self.all, read: &self.read, only_size: self.only_size };
+        let taken = self.frames.taken(&self.photos, &wanted, context)?;
+        if taken.is_passing() && self.certificate.is_some() {
+            return Err(Failure::input(
+                "--certificate: has the digests of all photographs, and frames of a video pass; expected --save-frames DIR, which keeps them",
+            ));
+        }
+        Ok(taken)
     }
 
     fn outputs(&self, inputs: &Inputs) -> Result<Outputs, Failure> {

@@ -17,8 +17,9 @@ use calibench_scenario::{Scenario, Subject, ViewsSubject};
 use clap::{Args, ValueEnum};
 
 use super::context::{Context, finder};
+use super::frames::{Frames, Wanted};
 use super::output;
-use super::photos::{AsRead, with_folders};
+use super::photos::AsRead;
 use super::progress::Progress;
 use crate::board::{Asked, HELP_OR_UNKNOWN, board_or_unknown};
 use crate::deliver::{deliver, print};
@@ -34,7 +35,7 @@ const LOOKED_AT: usize = 3;
 
 #[derive(Args)]
 pub struct Detect {
-    /// Photographs, or a folder of them: PNG, JPEG, TIFF, PNM, BMP or WebP
+    /// Photographs, or a folder of them: PNG, JPEG, TIFF, PNM, BMP or WebP; or a video
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
     #[arg(long, visible_alias = "chessboard", value_name = "BOARD", value_parser = board_or_unknown, help = HELP_OR_UNKNOWN,
@@ -52,6 +53,8 @@ pub struct Detect {
     /// Folder for the photographs with what was found drawn on them: the first points and those in doubt with their names; of one that is there, only what calibench wrote is replaced
     #[arg(long, value_name = "DIR")]
     draw: Option<PathBuf>,
+    #[command(flatten)]
+    frames: Frames,
     #[command(flatten)]
     read: AsRead,
     /// Where the points go [default: standard output]
@@ -71,13 +74,18 @@ enum Shapes {
 
 impl Detect {
     pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
-        self.photos = with_folders(&self.photos)?;
-        match (&self.testfield, self.board) {
+        let board = if let Some(Asked::Board(board)) = self.board { Some(board) } else { None };
+        let wanted = Wanted { command: "detect", board, each: self.all, read: &self.read, only_size: None };
+        let taken = self.frames.taken(&self.photos, &wanted, context)?;
+        self.photos.clone_from(&taken.photos);
+        taken.doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
+        let done = match (&self.testfield, self.board) {
             (Some(name), _) => self.field(context, name),
             (None, Some(Asked::Board(board))) => self.board(context, board),
             (None, Some(Asked::Unknown)) => self.unknown(context),
             (None, None) => Err(Failure::input("expected --board or --testfield")),
-        }
+        };
+        done.and(if taken.doubts.is_empty() { Ok(()) } else { Err(Failure::Doubt) })
     }
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {

@@ -18,7 +18,8 @@ use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
-use super::photos::{AsRead, with_folders};
+use super::frames::{Frames, Wanted};
+use super::photos::AsRead;
 use super::{output, reading};
 use crate::board::{HELP, board_of};
 use crate::deliver::{As, answer, print};
@@ -37,7 +38,7 @@ const MARGIN: f64 = 1.0;
 
 #[derive(Args)]
 pub struct Judge {
-    /// Photographs of a board, or a folder of them, all by one camera: at least six
+    /// Photographs of a board, a folder of them, or a video, all by one camera: at least six
     #[arg(value_name = "PHOTO", required_unless_present = "points")]
     photos: Vec<PathBuf>,
     /// Points that were measured beforehand, in place of photographs: CSV with image,target,x,y; of a chessboard targets r1c1, r1c2, ... as `detect` and `control` name
@@ -64,6 +65,8 @@ pub struct Judge {
     /// Leave out photographs of another size, px
     #[arg(long, value_name = "WxH", value_parser = reading::size, conflicts_with = "points")]
     only_size: Option<ImageSize>,
+    #[command(flatten)]
+    frames: Frames,
     /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners; with --camera parametric_corner:window=15]
     #[arg(short, long = "method", value_name = "METHOD", conflicts_with = "points")]
     methods: Vec<String>,
@@ -106,7 +109,10 @@ pub struct Judge {
 
 impl Judge {
     pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
-        self.photos = with_folders(&self.photos)?;
+        let board = self.board.filter(|_| !self.rig.is_asked());
+        let wanted = Wanted { command: "judge", board, each: self.all, read: &self.read, only_size: self.only_size };
+        let taken = self.frames.taken(&self.photos, &wanted, context)?;
+        self.photos.clone_from(&taken.photos);
         if self.rig.is_asked() {
             return self.run_rig(context);
         }
@@ -116,7 +122,9 @@ impl Judge {
             self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control).chain(&self.board_file),
         );
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs, ("judge", None))).transpose()?;
-        let (material, doubts, reading) = self.material(context)?;
+        let (material, mut doubts, reading) = self.material(context)?;
+        taken.doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
+        doubts.extend(taken.doubts.iter().cloned());
         let size = material.size;
         let published = self.camera.as_deref().or(self.published.as_deref());
         let published = published.map(|path| self.known_camera(path, size)).transpose()?;
