@@ -11,7 +11,7 @@ use calibench_records::description::{
     self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Systems, Target, Value, Views,
     operator,
 };
-use calibench_scenario::acceptance::{Classes, TestLines};
+use calibench_scenario::studies::acceptance::{Classes, TestLines};
 use calibench_scenario::studies::network::CheckPlan;
 use calibench_scenario::studies::networks::Kind;
 use calibench_scenario::studies::printed::{NETWORK, SENSOR};

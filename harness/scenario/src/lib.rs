@@ -1,6 +1,5 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
-pub mod acceptance;
 pub mod camera;
 pub mod catalogue;
 mod check;

@@ -7,7 +7,6 @@ use calibench_model::TargetKind;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
-use super::acceptance::wire::{ClassesWire, LengthsWire};
 use super::camera::{CameraWire, LocalWire};
 use super::figure::FigureWire;
 use super::judgement::JudgementWire;
@@ -15,6 +14,7 @@ use super::optics::OpticsWire;
 use super::pointing::{BoardPointingWire, HarrisWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
+use super::studies::acceptance::wire::{ClassesWire, LengthsWire};
 use super::studies::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
 use super::studies::calibrators::wire::{CalibratorWire, CalibratorsWire, FaultsWire};
 use super::studies::network::wire::{CalibrationWire, CheckWire};

@@ -242,8 +242,8 @@ fn qualisys_counts_in_parts_of_a_pixel() {
     assert_eq!((file.format.name, file.cameras.len()), ("qualisys", 1));
     let named = &file.cameras[0];
     let Camera::OpenCv(OpenCv { size, fx, fy, cx, cy, distortion, .. }) = named.camera else { panic!("{file:?}") };
-    assert_eq!((named.name.as_str(), size), ("10001", ImageSize { width: 1920, height: 1088 }));
-    assert_eq!([fx, fy, cx, cy], [1680.0, 1681.0, 950.5, 510.0]);
+    assert_eq!((named.name.as_str(), size), ("10001", ImageSize { width: 640, height: 480 }));
+    assert_eq!([fx, fy, cx, cy], [1680.0, 1681.0, 320.5, 239.5]);
     assert_eq!(distortion[..5], [-0.0625, 0.125, 0.0005, -0.00025, 0.0]);
     assert!(named.notes.iter().any(|note| note == "left out, since not calibrated: 10002"), "{:?}", named.notes);
     refused(
@@ -252,7 +252,7 @@ fn qualisys_counts_in_parts_of_a_pixel() {
         &[
             ("107520", "x", "`focalLengthU`: expected a finite number"),
             ("107520", "-1", "`focalLengthU`: expected a number above zero"),
-            ("122879.0", "122870.0", "`sensorMaxU`: expected a whole number of pixels"),
+            ("40959.0", "40950.0", "`sensorMaxU`: expected a whole number of pixels"),
             ("skew=\"0.000000\"", "skew=\"3\"", "`skew`: is 3: in which unit is not publicly known"),
             ("tangentalDistortion2", "radialDistortion4", "`radialDistortion4`: is no key that is known of a lens"),
             ("calibrated=\"true\"", "calibrated=\"false\"", "qualisys without a camera"),

@@ -7,7 +7,7 @@ use calibench_model::{ControlRow, MeasuredDistance, TestLength};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::figures::Quantity;
 use calibench_records::results::Figure;
-use calibench_scenario::acceptance::TestLines;
+use calibench_scenario::studies::acceptance::TestLines;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::told::Trial;

@@ -1,6 +1,7 @@
 //! What is made of what a scenario shows: a folder for each study. What is checked stands in its `mod.rs`, what is written in `wire.rs`, and the way from one to
 //! the other in `read.rs`.
 
+pub mod acceptance;
 pub mod blocks;
 pub mod calibrators;
 mod named;

@@ -2,6 +2,7 @@
 
 use calibench_records::description::{self, Study};
 use calibench_records::figures::{FigureName, Quantity};
+use calibench_records::statistics::running::Running;
 
 use crate::load::Loaded;
 use crate::load::adjustments::Summaries;
@@ -40,9 +41,7 @@ fn table(found: &Summaries, unit: &str) -> String {
         for way in ways(found, method) {
             let of = |quantity: Quantity| found.get(method, quantity.of(&[&way]));
             let Some((within, length)) = of(Quantity::TasksWithin).zip(of(Quantity::TaskLength)) else { continue };
-            let Some([stated, error]) = length.sigma.mean().zip(length.square.mean()).map(|(sigma, square)| [sigma, square.sqrt()]) else {
-                continue;
-            };
+            let Some((stated, error)) = rms(&length.sigma).zip(length.square.mean().map(f64::sqrt)) else { continue };
             let squares = of(Quantity::SquareOfTasks).and_then(|summary| Some(with_half(summary.value.mean()?, summary.value.half(), 3)));
             let share = within.value.mean().map(|mean| with_half(100.0 * mean, within.value.half().map(|half| 100.0 * half), 2));
             rows.row([
@@ -59,10 +58,16 @@ fn table(found: &Summaries, unit: &str) -> String {
     }
     format!(
         "{}\nMeans over cameras ± half their 95 % interval: the lengths of one camera share its errors. *Within 95 %*: how often the truth is in the interval that `task` says; 95 where it is \
-         honest. *z²*: errors in standard uncertainties, squared; 1 where they are true. *Stated / error*: the standard uncertainty over the errors that there are, so how long an \
-         interval is over how long it need be.\n\n",
+         honest. *z²*: errors in standard uncertainties, squared; 1 where they are true. *Stated*: root mean square. *Stated / error*: the standard uncertainty over the errors that there are; a few cameras that are hardly known weigh most in it.\n\n",
         rows.render()
     )
+}
+
+/// The root mean square of numbers of which mean and deviation are kept.
+fn rms(numbers: &Running) -> Option<f64> {
+    let (mean, count) = (numbers.mean()?, numbers.count as f64);
+    let variance = numbers.deviation().map_or(0.0, |deviation| deviation.powi(2) * (count - 1.0) / count);
+    Some((mean * mean + variance).sqrt())
 }
 
 /// The ways of measuring that the figures know, all of them last.

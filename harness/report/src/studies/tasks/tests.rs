@@ -16,7 +16,7 @@ fn a_row_says_how_often_intervals_hold_the_truth() {
     for way in ["all", "before a plane"] {
         put(Quantity::TasksWithin, way, Summary { value: running(&[1.0, 0.9, 0.8]), ..Summary::default() });
         put(Quantity::SquareOfTasks, way, Summary { value: running(&[1.0, 1.1, 1.2]), ..Summary::default() });
-        let length = Summary { value: running(&[80.0]), sigma: running(&[0.03, 0.03]), square: running(&[4e-4]), ..Summary::default() };
+        let length = Summary { value: running(&[80.0]), sigma: running(&[0.018, 0.024]), square: running(&[4e-4]), ..Summary::default() };
         put(Quantity::TaskLength, way, length);
     }
     found.figures.insert(
@@ -29,7 +29,8 @@ fn a_row_says_how_often_intervals_hold_the_truth() {
     let cells = row(&text, &["`pixel`", "before a plane"]);
     // t(0.975, 2) = 4.3027 times 0.1 over the root of 3.
     assert_eq!(cells[2..4], ["3", "90.00 ± 24.84"]);
-    assert_eq!(cells[5..], ["0.0300", "0.0200", "1.500"]);
+    // The root of the mean of .018^2 and .024^2 is .03 over the root of 2.
+    assert_eq!(cells[5..], ["0.0212", "0.0200", "1.061"]);
     let [plane, all] = ["before a plane", "| all "].map(|way| text.find(way).unwrap());
     assert!(plane < all, "all of them come last: {text}");
     assert!(text.contains("`pixel`: 33.3 % of the calibrations are in doubt."), "{text}");

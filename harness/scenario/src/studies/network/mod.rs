@@ -10,7 +10,7 @@ use calibench_model::camera::Photogrammetric;
 pub(crate) use read::read;
 
 use super::plan::StudyPlan;
-use crate::acceptance::Classes;
+use crate::studies::acceptance::Classes;
 
 /// The method whose image coordinates come from the hand alone.
 pub const POINTED: &str = "pixel";

@@ -7,8 +7,8 @@ use toml::Spanned;
 
 use super::wire::{self, CalibrationWire, CheckWire};
 use super::{Calibration, CheckPlan, POINTED, ParameterSet};
-use crate::acceptance::{Classes, read_classes};
 use crate::section::Section;
+use crate::studies::acceptance::{Classes, read_classes};
 use crate::studies::{Seen, places};
 
 /// Reads the table of a scenario of `views`, and what its check points must keep; `methods` are those of the scenario.

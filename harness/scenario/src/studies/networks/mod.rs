@@ -14,7 +14,7 @@ use calibench_synth::stations::Station;
 pub(crate) use read::{read_free, read_rig};
 
 use super::plan::StudyPlan;
-use crate::acceptance::TestLines;
+use crate::studies::acceptance::TestLines;
 
 /// The name under which its figures stand in the records.
 pub const SET: &str = "network";

@@ -7,8 +7,8 @@ use nalgebra::Point3;
 
 use super::wire::{DistanceWire, FreeNetworkWire, MountWire, RigWire};
 use super::{Bar, Kind, Mount, Networks};
-use crate::acceptance::read_lengths;
 use crate::section::Section;
+use crate::studies::acceptance::read_lengths;
 use crate::studies::{Seen, check_model, places};
 
 /// Lengths that are looked at if the scenario does not say how many.
