@@ -146,7 +146,7 @@ impl<'i> StudyTables<'i> {
         let seen = Seen { camera, field, stations, redrawn: redraw.is_some(), survey_sigma: *survey_sigma };
         let mut chosen = READERS.iter().zip(self.found).filter(|(_, (table, list))| table.is_some() || !list.is_empty());
         let Some((reader, (table, mut list))) = chosen.next() else {
-            problems.extend(self.acceptance.map(|section| not_accepting(&section, "alone".to_owned())));
+            problems.extend(self.acceptance.map(|section| not_accepting(&section, "alone")));
             return Some(ViewsSubject { recognition, ..views });
         };
         if let Some((other, (table, mut list))) = chosen.next() {
@@ -160,7 +160,7 @@ impl<'i> StudyTables<'i> {
             return None;
         };
         if let Some(section) = self.acceptance.as_ref().filter(|_| !reader.accepts) {
-            problems.push(not_accepting(section, format!("beside {}", reader.name)));
+            problems.push(not_accepting(section, &format!("beside {}", reader.name)));
         }
         let study = (reader.read)(Tables { table, list, acceptance: self.acceptance }, &seen, methods, problems)?;
         let stations = study.cameras_at(Cow::Owned(views.stations)).into_owned();
@@ -169,6 +169,6 @@ impl<'i> StudyTables<'i> {
 }
 
 /// Of `[acceptance]` that stands where nothing keeps it.
-fn not_accepting(section: &Section<'_>, where_it_is: String) -> Problem {
+fn not_accepting(section: &Section<'_>, where_it_is: &str) -> Problem {
     Problem::new(section.span.clone(), format!("{} {where_it_is}: expected it beside {}", ACCEPTANCE[1], accepting()))
 }

@@ -46,7 +46,6 @@ fn what_boards_and_poses_err_is_in_both() {
     for (change, way) in [
         (("centre_sigma = 0.05", "centre_sigma = 0.5"), "poses stated"),
         (("board_scale = 2e-4", "board_scale = 5e-3"), "poses from the board"),
-        (("print_noise = 0.03", "print_noise = 0.3"), "poses from the board"),
         (("plane_sigma = 0.05", "plane_sigma = 3"), "before a plane"),
     ] {
         let [before, after] = [length(&usual, way), length(&of_change(change), way)];

@@ -49,7 +49,7 @@ fn lengths(tables: &str) -> TestLines {
     match study(tables).unwrap() {
         Study::Networks(found) => match found.kind {
             Kind::Free { acceptance, .. } => acceptance.unwrap(),
-            other => panic!("{other:?}"),
+            other @ Kind::Rig(_) => panic!("{other:?}"),
         },
         other => panic!("{other:?}"),
     }
