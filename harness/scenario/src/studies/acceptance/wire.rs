@@ -21,7 +21,7 @@ pub struct LengthsWire {
     /// Of each measurement line the names of the targets on it: a calibrated length goes from the first to each other one. A test has seven lines of six targets.
     #[schemars(with = "Vec<Vec<String>>")]
     pub lines: Spanned<Vec<Vec<Spanned<String>>>>,
-    /// The limit `A + K L`, at most B, of the error of a length L: [A], [A, K] or [A, K, B]; A and B object units, K a number.
+    /// The limit `A + K L`, at most B, of the error of a length L: `[A]`, `[A, K]` or `[A, K, B]`; A and B object units, K a number.
     #[schemars(with = "Vec<f64>")]
     pub limit: Spanned<Vec<f64>>,
     /// Standard uncertainty (k = 1) of a calibrated length, object units. Default 0, which takes it as exact.
