@@ -4,7 +4,7 @@ use clap::Command;
 
 /// What a person wants, and the commands for it. Every command is in one group.
 const GROUPS: [(&str, &[&str]); 5] = [
-    ("Look at photographs", &["judge", "calibrate", "detect", "measure", "point", "undistort", "print"]),
+    ("Look at photographs", &["judge", "calibrate", "twin", "detect", "measure", "point", "undistort", "print"]),
     (
         "Work with cameras and points",
         &["camera", "convert", "diff", "stmap", "control", "resect", "intersect", "orient", "accept", "task", "certificate"],

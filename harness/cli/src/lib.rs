@@ -63,6 +63,7 @@ mod speed;
 mod stmap;
 mod stored;
 mod task;
+mod twin;
 mod undistort;
 
 use std::ffi::OsString;
@@ -143,6 +144,8 @@ enum Command {
     Calibrate(Box<calibrate::Calibrate>),
     /// Say which operator and which camera model to trust on your photographs, and how far
     Judge(Box<judge::Judge>),
+    /// Make a scenario that looks like your photographs, and say what each operator does to them
+    Twin(Box<twin::Twin>),
     /// Find where images were taken, from control points; the camera is known
     Resect(resect::Resect),
     /// Intersect object points from images whose camera and poses are known
@@ -261,6 +264,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Accept(accept) => accept.run(),
         Command::Certificate(certificate) => certificate.run(),
         Command::Task(task) => task.run(),
+        Command::Twin(twin) => twin.run(&context),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

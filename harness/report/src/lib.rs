@@ -51,6 +51,7 @@ pub mod sweep;
 mod targets;
 pub mod task;
 pub(crate) mod ticks;
+pub mod twin;
 pub mod verdicts;
 mod zhu;
 

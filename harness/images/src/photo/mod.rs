@@ -12,6 +12,7 @@ pub mod grey;
 mod helped;
 pub(crate) mod jpeg;
 mod levels;
+mod quantisation;
 mod rows;
 mod turn;
 
@@ -33,6 +34,7 @@ pub use depth::{DeepLevels, Depth, read_with_levels};
 pub use folder::{PhotoFolder, natural};
 pub use foreign::Foreign;
 pub use levels::{Levels, read_levels};
+pub use quantisation::quantisation;
 pub(crate) use rows::of_png;
 pub use turn::Turn;
 

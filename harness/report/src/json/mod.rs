@@ -19,6 +19,7 @@ mod rig_stands;
 mod schema;
 mod task;
 mod text;
+mod twin;
 
 use std::io::{self, Write};
 
@@ -39,6 +40,7 @@ pub use rig::RigAnswer;
 pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
 pub use task::TaskAnswer;
+pub use twin::{TwinAnswer, TwinCase, TwinCaseOperator, TwinCurves, TwinLook, TwinOperator, TwinPart};
 
 /// What a command answers.
 pub trait Answer: Serialize + JsonSchema {

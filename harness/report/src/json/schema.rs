@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer, RigStandsAnswer, TaskAnswer,
+    MeasurementAnswer, RigAnswer, RigStandsAnswer, TaskAnswer, TwinAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 11] = [
+pub const COMMANDS: [&str; 12] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
     JudgementAnswer::COMMAND,
@@ -22,6 +22,7 @@ pub const COMMANDS: [&str; 11] = [
     Measured::COMMAND,
     AcceptanceAnswer::COMMAND,
     TaskAnswer::COMMAND,
+    TwinAnswer::COMMAND,
 ];
 
 /// What `measure` answers: the schema is the same for any rows.
@@ -41,6 +42,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
         Measured::COMMAND => of::<Measured>(),
         AcceptanceAnswer::COMMAND => of::<AcceptanceAnswer>(),
         TaskAnswer::COMMAND => of::<TaskAnswer>(),
+        TwinAnswer::COMMAND => of::<TwinAnswer>(),
         _ => return None,
     })
 }

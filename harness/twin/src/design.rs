@@ -1,0 +1,141 @@
+//! What a twin is made of, and how it comes nearer to what photographs look like.
+
+use crate::look::{Figure, Light, Look, NoiseLine};
+
+/// The variance that a photosite of full width adds to any line spread, px^2.
+const PIXEL: f64 = 1.0 / 12.0;
+/// The smallest Gaussian blur beside a motion, px.
+const LEAST_BLUR: f64 = 0.12;
+/// A motion below this is not told from none, px.
+const LEAST_MOTION: f64 = 0.3;
+
+/// What a view is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewDesign {
+    /// Its light.
+    pub light: Light,
+    /// Covariance of blur in the middle of the frame, without the pixel's own: xx, xy, yy, px^2.
+    pub blur: [f64; 3],
+}
+
+/// What a twin is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// By view.
+    pub views: Vec<ViewDesign>,
+    /// How much larger the variance of blur is in the frame's corners, px^2.
+    pub corner: f64,
+    /// Noise against level.
+    pub noise: NoiseLine,
+    /// Standard deviation of the Gaussian that smooths noise, px; 0: it is white.
+    pub noise_blur: f64,
+    /// Positive: amount of an unsharp mask. Negative: less the share of the light in a tail.
+    pub halo: f64,
+    /// Dark areas grow by this on every side, as a share of a square.
+    pub ink_spread: f64,
+    /// Variance of printed edges across themselves, as a share of a square, squared.
+    pub raggedness: f64,
+}
+
+/// How much sharpening makes an overshoot of the whole contrast, about.
+pub(crate) const HALO_GAIN: f64 = 12.0;
+/// Share of light in a tail at most.
+const MOST_TAIL: f64 = 0.4;
+/// Amount of sharpening at most.
+const MOST_SHARPENING: f64 = 3.0;
+/// Noise is smoothed by no more than this, px.
+const MOST_NOISE_BLUR: f64 = 2.0;
+
+impl Design {
+    /// A first one, that of photographs that look so. Views without a look of their own have that of the others.
+    pub fn first(look: &Look) -> Option<Self> {
+        let usual = look.lights.iter().flatten().next().copied()?;
+        let spread = look.spread().powi(2);
+        let view = |(light, spreads): (&Option<Light>, &Option<[f64; 3]>)| {
+            let [xx, xy, yy] = spreads.unwrap_or([spread, 0.0, spread]);
+            ViewDesign { light: light.unwrap_or(usual), blur: [xx - PIXEL, xy, yy - PIXEL] }
+        };
+        Some(Self {
+            views: look.lights.iter().zip(&look.spreads).map(view).collect(),
+            corner: look.corner,
+            noise: look.noise,
+            noise_blur: look.correlation.map_or(0.0, |figure| blur_of(figure.value)),
+            halo: 0.0,
+            ink_spread: look.shift.map_or(0.0, |figure| figure.value),
+            raggedness: 0.0,
+        })
+    }
+
+    /// One that looks more like photographs of look `real` than this one, which looks like `twin`. `before` is an earlier one and its look: what it tells of how looks
+    /// follow designs is used.
+    #[must_use]
+    pub fn nearer(&self, real: &Look, twin: &Look, before: Option<(&Self, &Look)>) -> Self {
+        let mut next = self.clone();
+        let views = next.views.iter_mut().zip(real.lights.iter().zip(&twin.lights)).zip(real.spreads.iter().zip(&twin.spreads));
+        for ((view, lights), spreads) in views {
+            if let (Some(real), Some(twin)) = lights {
+                view.light.exposure *= real.exposure / twin.exposure;
+                view.light.veil += real.veil - twin.veil;
+                (0..2).for_each(|k| view.light.gradient[k] += real.gradient[k] - twin.gradient[k]);
+            }
+            if let (Some(real), Some(twin)) = spreads {
+                (0..3).for_each(|k| view.blur[k] += real[k] - twin[k]);
+            }
+        }
+        next.corner += real.corner - twin.corner;
+        next.noise = NoiseLine {
+            dark: (self.noise.dark + real.noise.dark - twin.noise.dark).max(0.0),
+            slope: (self.noise.slope + real.noise.slope - twin.noise.slope).max(0.0),
+        };
+        let wanted = |real: Option<Figure>, twin: Option<Figure>| real.zip(twin).map_or(0.0, |(real, twin)| real.value - twin.value);
+        let correlation = correlation_of(self.noise_blur) + wanted(real.correlation, twin.correlation);
+        next.noise_blur = blur_of(correlation);
+        let gain = |usual: f64, change: f64, change_of_look: f64| {
+            let found = change / change_of_look;
+            if found.is_finite() && found > 0.2 * usual && found < 5.0 * usual { found } else { usual }
+        };
+        let looks = before.map(|(design, look)| (design, wanted(twin.halo, look.halo), wanted(twin.raggedness, look.raggedness)));
+        let (of_halo, of_rags) = looks.map_or((f64::NAN, f64::NAN), |(design, halo, rags)| {
+            ((self.halo - design.halo) / halo, (self.raggedness - design.raggedness) / rags)
+        });
+        next.halo = (self.halo + gain(HALO_GAIN, of_halo, 1.0) * wanted(real.halo, twin.halo)).clamp(-MOST_TAIL, MOST_SHARPENING);
+        let scale = 1.0 / (real.side * real.side);
+        next.raggedness = (self.raggedness + gain(1.5 * scale, of_rags, 1.0) * wanted(real.raggedness, twin.raggedness)).max(0.0);
+        next.ink_spread += wanted(real.shift, twin.shift);
+        next
+    }
+}
+
+/// Blur and motion of a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smear {
+    /// Standard deviation of a Gaussian, px.
+    pub blur: f64,
+    /// A straight motion [dx, dy], px, where one is told.
+    pub motion: Option<[f64; 2]>,
+}
+
+impl ViewDesign {
+    /// Blur and motion with this covariance: the smaller axis is that of the blur, what the larger one has more is a motion.
+    pub fn smear(&self) -> Smear {
+        let [xx, xy, yy] = self.blur;
+        let (mean, half) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+        let length = (24.0 * half).sqrt();
+        let least = LEAST_BLUR * LEAST_BLUR;
+        if length < LEAST_MOTION || mean - half < least {
+            return Smear { blur: mean.max(least).sqrt(), motion: None };
+        }
+        let direction = 0.5 * (2.0 * xy).atan2(xx - yy);
+        Smear { blur: (mean - half).sqrt(), motion: Some([length * direction.cos(), length * direction.sin()]) }
+    }
+}
+
+/// The correlation of neighbouring pixels of white noise that a Gaussian of `blur` px has smoothed.
+pub(crate) fn correlation_of(blur: f64) -> f64 {
+    if blur > 0.0 { (-0.25 / (blur * blur)).exp() } else { 0.0 }
+}
+
+/// The Gaussian that leaves this correlation, px.
+pub(crate) fn blur_of(correlation: f64) -> f64 {
+    if correlation <= 1e-3 { 0.0 } else { (-0.25 / correlation.min(0.95).ln()).sqrt().min(MOST_NOISE_BLUR) }
+}
