@@ -143,7 +143,7 @@ impl Render {
             row: truth::StationRow::new(view.station, &name, exposure.clipped),
             starts,
             listed,
-            notes: clipped.into_iter().chain(truth::warnings(prepared.subject, view, &name)).collect(),
+            notes: clipped.into_iter().chain(truth::warnings(view, &name)).collect(),
         })
     }
 

@@ -2,6 +2,7 @@
 
 use calibench_images::PhotoError;
 use calibench_measure::KindsGap;
+use calibench_scenario::ImagingError;
 use calibench_synth::local::LocalError;
 use calibench_synth::optics::OpticsError;
 use calibench_synth::sensor::SensorError;
@@ -60,6 +61,9 @@ pub enum RunError {
     /// A lens that cannot be.
     #[error(transparent)]
     Optics(#[from] OpticsError),
+    /// A lens or a sensor that cannot be at its station.
+    #[error(transparent)]
+    Imaging(#[from] ImagingError),
     /// An image that the sensor cannot write.
     #[error(transparent)]
     Sensor(#[from] SensorError),

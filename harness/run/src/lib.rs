@@ -20,6 +20,7 @@ pub mod prepared;
 pub mod reuse;
 mod rmse;
 mod scene;
+mod setups;
 pub mod shots;
 pub mod store;
 pub mod studies;

@@ -8,7 +8,7 @@ use calibench_model::{Image, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
 use calibench_scenario::{Recognition, Scenario, ViewsSubject};
 use calibench_synth::bound::Work;
-use calibench_synth::raster::{Outlined, Picture, Renderer};
+use calibench_synth::raster::{Outlined, Picture};
 use calibench_synth::sensor::Exposure;
 use calibench_synth::stations::Station;
 use calibench_synth::view::{TargetTruth, View, Visibility};
@@ -16,7 +16,8 @@ use rayon::prelude::*;
 
 use crate::RunError;
 use crate::bounded::TrialBounds;
-use crate::bounds::{BySet, TargetBounds};
+use crate::bounds::BySet;
+use crate::setups::{Setup, Setups};
 
 /// What is the same in all trials.
 pub struct Prepared<'a> {
@@ -24,7 +25,7 @@ pub struct Prepared<'a> {
     pub subject: &'a ViewsSubject,
     /// The views, in the order of the stations.
     pub views: Vec<PreparedView<'a>>,
-    pub(super) renderer: Arc<Renderer>,
+    pub(super) setups: Arc<Setups>,
     /// Whether the light of views is kept: where it is the same in several trials.
     pub(super) keeps_light: bool,
     pub(super) targets: Vec<Arc<str>>,
@@ -45,7 +46,15 @@ pub struct PreparedView<'a> {
     /// The bound of each target that is measured.
     pub(super) bounds: Vec<BySet>,
     pub(super) name: Arc<str>,
+    setup: Arc<Setup>,
     light: OnceLock<Image<'static>>,
+}
+
+impl PreparedView<'_> {
+    /// How far from a point its light falls, px.
+    pub fn reach(&self) -> f64 {
+        self.setup.imaging.optics.reach()
+    }
 }
 
 impl<'a> Prepared<'a> {
@@ -62,10 +71,11 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// As [`Self::new`].
     pub fn of(subject: &'a ViewsSubject, stations: &'a [Station], key: Key<'_>) -> Result<Self, RunError> {
-        Self::with(subject, stations, key, None, renderer(subject)?)
+        let setups = Setups::new(subject, stations, |_| Ok(None))?;
+        Self::with(subject, stations, key, false, Arc::new(setups))
     }
 
-    /// As [`Self::of`], with the bounds of methods, by the `renderer` of the subject.
+    /// As [`Self::of`], with the lenses and sensors of the run, and the bounds of methods if they are wanted.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -73,18 +83,18 @@ impl<'a> Prepared<'a> {
         subject: &'a ViewsSubject,
         stations: &'a [Station],
         key: Key<'_>,
-        bounds: Option<&TargetBounds>,
-        renderer: Arc<Renderer>,
+        bounds: bool,
+        setups: Arc<Setups>,
     ) -> Result<Self, RunError> {
-        let margin = subject.imaging.optics.reach();
         let local = subject.local_of(key)?;
         let view = |station: &'a Station| {
+            let setup = setups.of(subject, station.own)?;
             let field = station.field(&subject.field);
             let view = View { field: &field, camera: &subject.camera, local: local.as_ref(), pose: &station.pose };
             let failed = |source| RunError::View { station: station.name.clone(), source };
-            let seen = view.seen(margin).map_err(failed)?;
+            let seen = view.seen(setup.imaging.optics.reach()).map_err(failed)?;
             let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
-            let bounds = bounds.map(|bounds| (bounds, Outlined::of(&picture)));
+            let bounds = setup.bounds.as_ref().filter(|_| bounds).map(|bounds| (bounds, Outlined::of(&picture)));
             let bound = |work: &mut Work, (target, truth): (&ObjectTarget, &TargetTruth)| match (&bounds, truth.at) {
                 // About the reference point turning a disc would be moving it.
                 (Some((bounds, outlined)), Some(at)) if is_pointed_at(subject, truth) => {
@@ -94,13 +104,14 @@ impl<'a> Prepared<'a> {
             };
             let bounds = subject.field.targets.par_iter().zip(&truth).map_init(Work::default, bound).collect();
             let nodes = subject.recognition.iter().flat_map(|plan| nodes(plan, &view)).collect();
-            Ok(PreparedView { station, picture, truth, nodes, bounds, name: station.name.as_str().into(), light: OnceLock::new() })
+            let name = station.name.as_str().into();
+            Ok(PreparedView { station, picture, truth, nodes, bounds, name, setup, light: OnceLock::new() })
         };
         // The first station's error is the one that is said, whichever comes first.
         let views = stations.par_iter().map(view).collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, RunError>>()?;
         let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
         let sought = subject.sheet.and_then(|board| Sought::new(board).ok());
-        Ok(Self { subject, views, renderer, keeps_light: false, targets, sought })
+        Ok(Self { subject, views, setups, keeps_light: false, targets, sought })
     }
 
     /// The image of a view.
@@ -108,16 +119,16 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A size that the image's format cannot hold.
     pub fn image(&self, view: &PreparedView<'_>, key: Key<'_>) -> Result<Exposure, RunError> {
-        let (imaging, key) = (&self.subject.imaging, Key { view: &view.station.name, ..key });
+        let (imaging, key) = (&view.setup.imaging, Key { view: &view.station.name, ..key });
         if self.keeps_light {
             return Ok(imaging.expose_light(view.light.get_or_init(|| self.irradiance(view)), key)?);
         }
-        Ok(imaging.expose(&self.renderer, &view.picture, key)?)
+        Ok(imaging.expose(&view.setup.renderer, &view.picture, key)?)
     }
 
     /// The image of a view before the sensor, without noise and without row jitter.
     pub fn irradiance(&self, view: &PreparedView<'_>) -> Image<'static> {
-        self.renderer.render(&view.picture, &[])
+        view.setup.renderer.render(&view.picture, &[])
     }
 
     /// The bounds of what is seen in each view.
@@ -146,12 +157,6 @@ fn nodes(plan: &Recognition, view: &View<'_>) -> Vec<([usize; 2], PixelPoint)> {
         (within(at.x, size.width) && within(at.y, size.height)).then_some((node, at))
     };
     recogniser.nodes().filter_map(seen).collect()
-}
-
-/// Renders the images of `subject`, in all trials.
-pub(super) fn renderer(subject: &ViewsSubject) -> Result<Arc<Renderer>, RunError> {
-    let size = subject.camera.size();
-    Ok(Arc::new(subject.imaging.renderer(size.width as usize, size.height as usize)?))
 }
 
 /// The image of the first view in the first trial, and where measuring starts in it.

@@ -90,13 +90,13 @@ pub fn write_view(folder: &NewFolder, name: &str, subject: &ViewsSubject, view: 
     let image = kept_image_name(name);
     let targets = subject.field.targets.chunks(ROWS).zip(view.truth.chunks(ROWS));
     let rows = targets.flat_map(|(targets, truth)| {
-        let row = |(target, truth)| view_row(subject, &image, target, truth);
+        let row = |(target, truth)| view_row(view.reach(), &image, target, truth);
         targets.par_iter().zip(truth).map(row).collect::<Vec<_>>()
     });
     table(folder, &format!("{name}.csv"), &VIEW_COLUMNS, rows)
 }
 
-fn view_row(subject: &ViewsSubject, image: &str, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
+fn view_row(reach: f64, image: &str, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
     let mut row = vec![image.to_owned(), target.id.clone(), target.kind.to_string()];
     let numbers = |row: &mut Vec<String>, values: Option<&[f64]>, count: usize| match values {
         Some(values) => row.extend(values.iter().map(f64::to_string)),
@@ -112,7 +112,7 @@ fn view_row(subject: &ViewsSubject, image: &str, target: &ObjectTarget, truth: &
     for side in [size_px(truth), truth.room] {
         row.push(side.map_or_else(String::new, |side| side.to_string()));
     }
-    row.push(warning(subject, truth).unwrap_or_default().to_owned());
+    row.push(warning(reach, truth).unwrap_or_default().to_owned());
     row
 }
 
@@ -121,12 +121,12 @@ fn size_px(truth: &TargetTruth) -> Option<f64> {
     truth.affine.map(|a| (a.axx * a.ayy - a.axy * a.ayx).abs().sqrt())
 }
 
-/// What makes a target in the image doubtful.
-fn warning(subject: &ViewsSubject, truth: &TargetTruth) -> Option<&'static str> {
+/// What makes a target doubtful in an image where the light of a point falls up to `reach` px from it.
+fn warning(reach: f64, truth: &TargetTruth) -> Option<&'static str> {
     let size = size_px(truth).filter(|_| matches!(truth.visibility, Visibility::Visible | Visibility::Clipped))?;
     if size < 1.0 {
         Some("smaller than a pixel")
-    } else if size < 2.0 * (subject.imaging.optics.reach() - 1.0) / 3.0 {
+    } else if size < 2.0 * (reach - 1.0) / 3.0 {
         Some("blurred beyond its own size")
     } else {
         None
@@ -134,9 +134,9 @@ fn warning(subject: &ViewsSubject, truth: &TargetTruth) -> Option<&'static str> 
 }
 
 /// The warnings of a view, whose image is called `name`, each with the number of targets that it concerns.
-pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>, name: &str) -> Vec<String> {
+pub fn warnings(view: &PreparedView<'_>, name: &str) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
-    for warning in view.truth.iter().filter_map(|truth| warning(subject, truth)) {
+    for warning in view.truth.iter().filter_map(|truth| warning(view.reach(), truth)) {
         match counted.iter_mut().find(|(known, _)| *known == warning) {
             Some((_, count)) => *count += 1,
             None => counted.push((warning, 1)),

@@ -1,33 +1,35 @@
 //! Trials of a testfield that is seen from several stations.
 
+use std::sync::Arc;
+
 use calibench_model::Measurement;
 use calibench_model::camera::CameraModel;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, PointResult, Trial};
-use calibench_scenario::{Study, ViewsSubject};
+use calibench_scenario::{Imaging, Study, ViewsSubject};
 
 use super::bounded::TrialBounds;
 use super::bounds::TargetBounds;
-use super::prepared::{Prepared, kind_of, renderer, seen};
+use super::prepared::{Prepared, kind_of, seen};
 use super::viewed::run_views;
 use super::{Plan, RunError};
 use crate::made::Made;
+use crate::setups::Setups;
 use crate::studies::{self, network};
 
 /// Pixels of light that are kept at most, 4 bytes each.
 const MOST_LIGHT: usize = 50_000_000;
 
-/// What bounds the methods of `plan` in the images of `subject`.
-pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<TargetBounds>, RunError> {
+/// What bounds the methods of `plan` in images that the camera of `subject` takes with this lens and sensor.
+fn bounds(plan: &Plan<'_>, subject: &ViewsSubject, imaging: &Imaging) -> Result<Option<TargetBounds>, RunError> {
     let size = subject.camera.size();
     let size = [size.width as usize, size.height as usize];
-    Ok(TargetBounds::new(&subject.imaging, 0.0, size, plan.bound_windows(), plan.all_unknowns())?)
+    Ok(TargetBounds::new(imaging, 0.0, size, plan.bound_windows(), plan.all_unknowns())?)
 }
 
 /// What makes the trials of views, with what is the same in all of them.
 pub(crate) struct Trials<'a> {
     prepared: Prepared<'a>,
-    bounds: Option<TargetBounds>,
 }
 
 impl<'a> Trials<'a> {
@@ -35,14 +37,14 @@ impl<'a> Trials<'a> {
     pub fn new(plan: &Plan<'_>, subject: &'a ViewsSubject) -> Result<Self, RunError> {
         // Drawn coordinates are those of no image.
         let drawn = subject.study.plan().drawn().is_some();
-        let bounds = if plan.bounds && !drawn { bounds(plan, subject)? } else { None };
+        let bounded = plan.bounds && !drawn;
+        let setups = Setups::new(subject, &subject.stations, |imaging| if bounded { bounds(plan, subject, imaging) } else { Ok(None) })?;
         // What is drawn anew in each trial has its bounds there.
-        let fixed = bounds.as_ref().filter(|_| !subject.changes());
-        let mut prepared = Prepared::with(subject, &subject.stations, plan.key(0), fixed, renderer(subject)?)?;
+        let mut prepared = Prepared::with(subject, &subject.stations, plan.key(0), !subject.changes(), Arc::new(setups))?;
         let pixels = subject.camera.size().width as usize * subject.camera.size().height as usize;
         let fits = subject.stations.len().saturating_mul(pixels) <= MOST_LIGHT;
         prepared.keeps_light = plan.span().count() > 1 && fits && !drawn && !subject.changes() && subject.imaging.has_steady_light();
-        Ok(Self { prepared, bounds })
+        Ok(Self { prepared })
     }
 
     /// The bounds of all trials, where they are the same in all.
@@ -60,8 +62,7 @@ impl<'a> Trials<'a> {
         let (key, subject) = (plan.key(number), self.prepared.subject);
         // Of points that are not kept nobody asks for the bound.
         let kept = number == 0 || !matches!(subject.study, Study::Blocks(_)) || subject.keeps_points();
-        let bounds = self.bounds.as_ref().filter(|_| kept);
-        made(&Prepared::with(subject, &subject.stations_of(key)?, key, bounds, self.prepared.renderer.clone())?)
+        made(&Prepared::with(subject, &subject.stations_of(key)?, key, kept, self.prepared.setups.clone())?)
     }
 
     /// The points of trial `number`, of which nothing is made.

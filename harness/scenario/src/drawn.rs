@@ -8,6 +8,8 @@ use crate::sweep::Sweep;
 const FIELD: &str = "testfield";
 /// Tables that say what is pictured beside it.
 const PICTURED: [&str; 7] = ["scene", "figure", "photographs", "camera", "stations", "station", "mount"];
+/// Keys of stations that say how light becomes grey values there.
+const OF_STATIONS: [&str; 5] = ["blur", "motion", "exposure", "veil", "gradient_across"];
 const TRANSFER: &str = "transfer";
 /// Keys of these tables that say how much is drawn, how it becomes grey values, or what is done with it: whoever changes one of them alone draws the same numbers.
 const ASIDE: [&str; 11] =
@@ -30,6 +32,13 @@ impl Drawn {
         for (_, table) in &mut root {
             if let DeValue::Table(table) = table.get_mut() {
                 ASIDE.iter().for_each(|key| drop(table.remove(*key)));
+            }
+        }
+        if let Some(DeValue::Array(stations)) = root.get_mut("station").map(|stations| stations.get_mut()) {
+            for station in stations.iter_mut() {
+                if let DeValue::Table(station) = station.get_mut() {
+                    OF_STATIONS.iter().for_each(|key| drop(station.remove(*key)));
+                }
             }
         }
         let field = text_of(&root, |key| key == FIELD);
@@ -72,6 +81,7 @@ mod tests {
             ("[optics]\nblur = 0.7\n[sensor]\ngrey_noise = 0.01", "[sensor]\ngrey_noise = 1.0e-2\n[optics]\nblur = 7e-1"),
             ("kind = \"wall\"", "kind = \"wall\"\nsurvey_sigma = 0.1"),
             ("sigma = 0.7", "detector = \"harris\""),
+            ("name = \"x\"", "name = \"x\"\nblur = 1\nmotion = [0, 1]\nexposure = 0.9\nveil = 0.1\ngradient_across = [0, 0.1]"),
             ("name = \"pixel\"", "name = \"lsm\"\n[[method]]\nname = \"pixel\"\n[calibration]\nsets = [\"c\"]"),
         ] {
             let other = TEXT.replacen(old, new, 1);

@@ -4,7 +4,9 @@ use calibench_model::Image;
 use calibench_random::Key;
 use calibench_synth::optics::{Optics, OpticsError};
 use calibench_synth::raster::{Picture, Renderer};
-use calibench_synth::sensor::{Clipped, Exposure, Frame, SensorError, row_shifts};
+use calibench_synth::sensor::{Clipped, Design, Exposure, Frame, Sensor, SensorError, row_shifts};
+use calibench_synth::stations::Own;
+use thiserror::Error;
 
 use crate::sensor::SensorSetup;
 
@@ -17,7 +19,33 @@ pub struct Imaging {
     pub sensor: Option<SensorSetup>,
 }
 
+/// Lens or sensor that cannot be.
+#[derive(Debug, Error)]
+pub enum ImagingError {
+    /// The lens.
+    #[error(transparent)]
+    Optics(#[from] OpticsError),
+    /// The sensor.
+    #[error(transparent)]
+    Sensor(#[from] SensorError),
+}
+
 impl Imaging {
+    /// As a station pictures that has something of its `own`. Light of its own needs a sensor, which passes on the rest where there is none.
+    ///
+    /// # Errors
+    /// Blur, motion or exposure beyond what lens and sensor can be.
+    pub fn with(&self, own: &Own) -> Result<Self, ImagingError> {
+        let optics = own.optics(&self.optics);
+        optics.check()?;
+        let sensor = match &self.sensor {
+            Some(setup) => Some(SensorSetup { sensor: Sensor::new(own.design(setup.sensor.design()))?, ..*setup }),
+            None if own.has_light() => Some(SensorSetup { sensor: Sensor::new(own.design(&Design::default()))?, row_jitter: 0.0 }),
+            None => None,
+        };
+        Ok(Self { optics, sensor })
+    }
+
     /// Renders images of `width` x `height` px.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ mod wire;
 
 pub use check::{parse, parse_cell};
 pub use drawn::Drawn;
-pub use imaging::Imaging;
+pub use imaging::{Imaging, ImagingError};
 pub use judgement::JudgementPlan;
 pub use methods::no_board;
 pub use plan::Scenario;

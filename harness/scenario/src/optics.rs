@@ -33,6 +33,11 @@ pub struct OpticsWire {
     pub fill_factor_area: Option<Fill>,
 }
 
+/// A motion [dx, dy], px.
+pub(crate) fn motion(Position(dx, dy): Position) -> Motion {
+    Motion { length: dx.hypot(dy), direction: dy.atan2(dx) }
+}
+
 /// Reads an `[optics]` table.
 pub fn read(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Optics> {
     let span = section.span.clone();
@@ -43,7 +48,7 @@ pub fn read(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Optics>
     }
     let length = |value: Option<Pixels>| value.map_or(0.0, |value| value.0);
     let aperture = wire.fill_factor_linear.map_or_else(|| wire.fill_factor_area.map_or(1.0, |area| area.0.sqrt()), |linear| linear.0);
-    let motion = wire.motion.map(|Position(dx, dy)| Motion { length: dx.hypot(dy), direction: dy.atan2(dx) });
+    let motion = wire.motion.map(motion);
     let (blur, corner_blur) = (length(wire.blur), wire.corner_blur.map(|blur| blur.0));
     let optics = Optics { blur, corner_blur, defocus: length(wire.defocus), motion, aperture };
     match optics.check() {

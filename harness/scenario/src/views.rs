@@ -116,6 +116,9 @@ impl<'i> ViewTables<'i> {
         let field = plan.generate(of_field).map_err(|error| problems.push(plan.problem(&error))).ok()?;
         let imaging = imaging.read(&surroundings(&camera, &field), problems);
         let plan_of_stations = stations::read(self.stations, self.explicit, problems)?;
+        if let Some(imaging) = &imaging {
+            plan_of_stations.check_imaging(imaging, problems);
+        }
         let drawn = plan_of_stations.generate(&field, &camera, key);
         let stations = drawn.map_err(|error| problems.push(plan_of_stations.problem(&error))).ok()?;
         let moved = plan_of_stations.each_trial;

@@ -12,6 +12,7 @@ mod own;
 mod recordings;
 mod reuse;
 mod second_solver;
+mod stations;
 mod store;
 mod tasks;
 mod truth;

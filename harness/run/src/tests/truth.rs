@@ -120,13 +120,12 @@ fn targets_that_the_image_cannot_show_are_warned_of() {
     // 1 mm at 6 m is a third of a pixel, 20 mm under a blur of 4 px are lost in it.
     for (size, blur, word) in [("0.001", "", "smaller than a pixel"), ("0.02", "\n[optics]\nblur = 4.0\n", "blurred beyond its own size")] {
         let changed = scenario(&[("size = 0.06", &format!("size = {size}")), ("\n[pointing]", &format!("{blur}\n[pointing]"))]);
-        let subject = views(&changed);
-        let prepared = Prepared::new(subject, KEY).unwrap();
-        assert_eq!(truth::warnings(subject, &prepared.views[0], "front"), [format!("front: 12 of 12 targets: {word}")]);
+        let prepared = Prepared::new(views(&changed), KEY).unwrap();
+        assert_eq!(truth::warnings(&prepared.views[0], "front"), [format!("front: 12 of 12 targets: {word}")]);
     }
     let usual = scenario(&[]);
     let prepared = Prepared::new(views(&usual), KEY).unwrap();
-    assert!(truth::warnings(views(&usual), &prepared.views[0], "front").is_empty());
+    assert!(truth::warnings(&prepared.views[0], "front").is_empty());
 }
 
 #[test]

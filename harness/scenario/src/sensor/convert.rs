@@ -114,6 +114,7 @@ pub(super) fn setup(wire: &SensorWire, keys: &Keys, around: &Surroundings, probl
     }
     let design = Design {
         vignetting,
+        veil: 0.0,
         gradient: gradient(wire),
         exposure,
         filter: wire.filter.map(|filter| ColourFilter {

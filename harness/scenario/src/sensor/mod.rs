@@ -10,6 +10,7 @@ mod wire;
 use calibench_diagnostics::Problem;
 
 use super::section::Section;
+pub(crate) use numbers::{Exposure, Gradient, Numbers};
 pub use setup::{SensorSetup, Surroundings};
 pub use wire::{DemosaicWire, Filter, SensorWire};
 

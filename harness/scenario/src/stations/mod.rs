@@ -4,11 +4,14 @@ use calibench_diagnostics::Problem;
 use calibench_model::camera::Camera;
 use calibench_model::{Pose, Testfield};
 use calibench_random::Key;
+use calibench_synth::sensor::{Gradient, Per};
 use calibench_synth::stations::{
-    Aim, Arc, BoardViews, RandomViews, Ring, Stand, StandBend, Station, StationError, check_names, check_sight, sees,
+    Aim, Arc, BoardViews, Own, RandomViews, Ring, Stand, StandBend, Station, StationError, check_names, check_sight, sees,
 };
 use nalgebra::{Point3, Vector3};
 
+use super::imaging::Imaging;
+use super::optics::motion;
 use super::section::Section;
 use super::testfield::{Spans, take_kind, wire::Degrees};
 
@@ -57,6 +60,7 @@ struct Given {
     name: String,
     at: Point3<f64>,
     attitude: Attitude,
+    own: Own,
 }
 
 /// Checked `[stations]` and `[[station]]` tables.
@@ -120,6 +124,16 @@ impl StationPlan {
         Problem::new(span.unwrap_or_else(|| self.spans.whole.clone()), error.to_string())
     }
 
+    /// Whether lens and sensor can be what each station says; mistakes are added to `problems`.
+    pub fn check_imaging(&self, imaging: &Imaging, problems: &mut Vec<Problem>) {
+        for given in &self.given {
+            if let Err(error) = imaging.with(&given.own) {
+                let span = self.spans.of_id(&given.name).unwrap_or_else(|| self.spans.whole.clone());
+                problems.push(Problem::new(span, format!("station `{}`: {error}", given.name)));
+            }
+        }
+    }
+
     /// The field's own aim with what the file gives instead.
     fn aim(&self, field: &Testfield) -> Option<Aim> {
         let own = Aim::of(field);
@@ -141,7 +155,7 @@ impl Given {
             }
         };
         let pose = pose.ok_or_else(|| StationError::Undetermined(self.name.clone()))?;
-        Ok(Station::new(self.name.clone(), pose))
+        Ok(Station { own: self.own, ..Station::new(self.name.clone(), pose) })
     }
 }
 
@@ -275,7 +289,15 @@ fn read_given(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Given
         (Some(_), Some(_)) => return wrong("has both `angles` and `towards`", "expected one of them"),
         (None, None) => return wrong("does not say how it is turned", "give `angles` or `towards`"),
     };
-    Some(Given { at: Point3::from(wire.at.0), name, attitude })
+    let gradient = wire.gradient_across.map(|numbers| Gradient { x: numbers.0[0].0, y: numbers.0[1].0, per: Per::Frame });
+    let own = Own {
+        blur: wire.blur.map(|blur| blur.0),
+        motion: wire.motion.map(motion),
+        exposure: wire.exposure.map(|factor| factor.0),
+        veil: wire.veil.map(|veil| veil.0),
+        gradient,
+    };
+    Some(Given { at: Point3::from(wire.at.0), name, attitude, own })
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 use calibench_diagnostics::Problems;
 use calibench_model::camera::{ImageSize, Photogrammetric};
+use calibench_synth::optics::{Motion, Optics};
+use calibench_synth::sensor::{Gradient, Per};
 use calibench_synth::testfield::{Chessboard, Levels};
 
 use super::*;
@@ -144,4 +146,36 @@ fn mistakes_of_given_stations_are_told_by_name() {
     refused(&format!("{station}angles = [180, 0, 0]"), "2:8: station `a` does not see the field: 0 of 54 targets inside the frame");
     refused(&format!("{station}angles = [0, 0, 0]\n{station}angles = [0, 0, 0]"), "6:8: station `a` stands here a second time");
     refused("[[station]]\nname = \" \"\nat = [1, 2, 3]\nangles = [0, 0, 0]", "2:8: station ` ` has a name that cannot be read");
+}
+
+const ABOVE: &str = "[[station]]\nname = \"a\"\nat = [120, -75, 800]\nangles = [0, 0, 0.12345678901234567]\n";
+
+#[test]
+fn a_station_has_what_it_says_of_its_own_and_its_angles_to_the_last_digit() {
+    let own = "blur = 0.9\nmotion = [0, 2]\nexposure = 1.1\nveil = -0.03\ngradient_across = [0.1, -0.2]";
+    let stations = stations(&format!("{ABOVE}{own}\n{}", ABOVE.replacen("\"a\"", "\"b\"", 1))).unwrap();
+    let motion = Motion { length: 2.0, direction: std::f64::consts::FRAC_PI_2 };
+    let gradient = Gradient { x: 0.1, y: -0.2, per: Per::Frame };
+    let expected = Own { blur: Some(0.9), motion: Some(motion), exposure: Some(1.1), veil: Some(-0.03), gradient: Some(gradient) };
+    assert_eq!([stations[0].own, stations[1].own], [expected, Own::default()]);
+    assert_eq!(stations[0].pose, stations[1].pose);
+    assert!((stations[0].pose.angles()[2].to_degrees() - 0.123_456_789_012_345_67).abs() < 1e-15);
+    refused(&format!("{ABOVE}veil = -0.6"), "expected a number from -0.5 to 1, found -0.6");
+    refused(&format!("{ABOVE}exposure = 0"), "expected a number from 0.000001 to 1000000, found 0");
+    refused(&format!("{ABOVE}gradient_across = [0.1]"), "expected 2 numbers in a list, found 1");
+}
+
+#[test]
+fn what_a_station_says_of_its_own_must_go_with_lens_and_sensor() {
+    let text = format!("{ABOVE}motion = [3, 0]\n");
+    let root = DeTable::parse(&text).unwrap().into_inner();
+    let mut root = Section { name: "the scenario", span: 0..1, table: root };
+    let mut problems = Vec::new();
+    let given = root.take_tables("station", "[[station]]", &mut problems).unwrap_or_default();
+    let plan = read(None, given, &mut problems).unwrap();
+    plan.check_imaging(&Imaging { optics: Optics { blur: 0.5, ..Optics::default() }, sensor: None }, &mut problems);
+    assert!(problems.is_empty(), "{problems:?}");
+    plan.check_imaging(&Imaging::default(), &mut problems);
+    let told = Problems { file: "f".into(), text: text.clone(), problems }.to_string();
+    assert!(told.contains("2:8: station `a`: a motion needs a Gaussian blur of at least 0.1 px"), "{told}");
 }

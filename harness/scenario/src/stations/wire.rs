@@ -3,7 +3,15 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::super::optics::Pixels;
+use super::super::sensor::{Exposure, Gradient, Numbers};
 use super::super::testfield::wire::{Count, Degrees, Fraction, Height, Length, Tuple};
+use super::super::wire::{Position, bounded};
+
+bounded! {
+    /// Stray light, fraction of full scale.
+    Veil(f64), f64 "f64", -0.5, 1.0;
+}
 
 /// Stations on a ring around the field's normal.
 #[derive(Deserialize, JsonSchema)]
@@ -102,6 +110,16 @@ pub struct StationWire {
     pub up: Option<Tuple<3>>,
     /// With `towards`: the roll (kappa) that follows, degrees; positive turns the picture clockwise. Default 0.
     pub roll: Option<Degrees>,
+    /// Standard deviation of the Gaussian blur of its image, px: in place of `blur` of [optics]; `corner_blur` keeps its ratio to it.
+    pub blur: Option<Pixels>,
+    /// A straight motion during its exposure [dx, dy], px: in place of `motion` of [optics].
+    pub motion: Option<Position>,
+    /// Factor of the light in its image, beside `exposure` of [sensor]. Default 1.
+    pub exposure: Option<Exposure>,
+    /// Stray light in its image, alike everywhere, added after exposure and before noise, fraction of full scale; negative for a black level that a camera takes away. -0.5 to 1. Default 0.
+    pub veil: Option<Veil>,
+    /// Illumination gradient [x, y] of its image: change of the light across the whole frame, in place of that of [sensor]; it leaves `veil` alone.
+    pub gradient_across: Option<Numbers<Gradient, 2>>,
 }
 
 /// What `[stations]` has beside the keys of its kind.

@@ -1,6 +1,6 @@
 //! What a camera makes of the light behind its photosites' apertures: irradiance to the image that is read.
 //!
-//! The stages, each optional, in the order in which light and signal pass them: vignetting and the illumination's gradient, exposure, colour filter,
+//! The stages, each optional, in the order in which light and signal pass them: vignetting and the illumination's gradient, exposure, veil, colour filter,
 //! [`Noise`] (for electrons: response non-uniformity, photon noise and dark signal, the full well, dark signal non-uniformity, read noise, row
 //! noise), converter, demosaic, gamma, output levels, JPEG. Grey values are fractions of full scale; light of 1 is what a target of reflectance 1
 //! sends before exposure. The terms and units of the noise are those of EMVA 1288.
@@ -54,6 +54,8 @@ pub struct Design {
     pub gradient: Option<Gradient>,
     /// Grey value (fraction of full scale) of reflectance 1, before the filter.
     pub exposure: f64,
+    /// Stray light that is everywhere alike, grey value (fraction of full scale) before the filter; negative for what a camera takes away as black.
+    pub veil: f64,
     /// The colour filter.
     pub filter: Option<ColourFilter>,
     /// The noise.
@@ -109,6 +111,7 @@ impl Default for Design {
             vignetting: None,
             gradient: None,
             exposure: 1.0,
+            veil: 0.0,
             filter: None,
             noise: Noise::None,
             converter: None,
@@ -183,6 +186,7 @@ impl Sensor {
         design.vignetting.as_ref().map_or(Ok(()), Vignetting::check)?;
         design.gradient.as_ref().map_or(Ok(()), Gradient::check)?;
         check("the exposure", design.exposure, 1e-6, 1e6)?;
+        check("the veil", design.veil, -0.5, 1.0)?;
         design.filter.as_ref().map_or(Ok(()), ColourFilter::check)?;
         check_bits("a converter", design.converter, &[8, 10, 12, 14, 16], "8, 10, 12, 14 or 16")?;
         check_bits("an image", design.output, &[8, 12, 16], "8, 12 or 16")?;

@@ -65,6 +65,10 @@ impl Sensor {
         if design.exposure != 1.0 {
             scale(row, design.exposure as f32);
         }
+        if design.veil != 0.0 {
+            let veil = design.veil as f32;
+            row.iter_mut().for_each(|light| *light += veil);
+        }
         if let Some(filter) = &design.filter {
             filter.apply(row, y);
         }

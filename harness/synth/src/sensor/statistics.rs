@@ -5,14 +5,14 @@ use super::{Noise, Sensor};
 
 impl Sensor {
     /// The mean grey value (fraction of full scale) of a pixel to which shading leaves `light` (reflectance 1 is 1), where nothing is clipped:
-    /// exposure, dark signal and black level. `None` of a chain whose grey values are not linear in light or differ from photosite to photosite:
+    /// exposure, veil, dark signal and black level. `None` of a chain whose grey values are not linear in light or differ from photosite to photosite:
     /// colour filter or gamma.
     pub fn mean(&self, light: f64) -> Option<f64> {
         let design = &self.design;
         if design.gamma.is_some() || design.filter.is_some() {
             return None;
         }
-        let exposed = light * design.exposure;
+        let exposed = light * design.exposure + design.veil;
         Some(match &design.noise {
             Noise::Electrons(electrons) => {
                 let (black, per_electron) = electrons.scale(design.converter);

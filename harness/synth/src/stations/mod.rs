@@ -6,6 +6,7 @@
 pub mod aim;
 pub mod board;
 pub mod convergent;
+mod own;
 pub mod random;
 pub mod stand;
 mod visibility;
@@ -19,6 +20,7 @@ use thiserror::Error;
 pub use aim::Aim;
 pub use board::BoardViews;
 pub use convergent::{Arc, Ring};
+pub use own::Own;
 pub use random::RandomViews;
 pub use stand::{Stand, StandBend};
 pub use visibility::{check_sight, sees};
@@ -32,12 +34,14 @@ pub struct Station {
     pub pose: Pose,
     /// How the field is bent before this camera, if what holds it bends it: in the axes of its one plate. `None` leaves the field as it is.
     pub bend: Option<Bend>,
+    /// What its image has of its own.
+    pub own: Own,
 }
 
 impl Station {
     /// A station before a field as it is.
     pub fn new(name: String, pose: Pose) -> Self {
-        Self { name, pose, bend: None }
+        Self { name, pose, bend: None, own: Own::default() }
     }
 
     /// The field as it is before this camera.

@@ -61,7 +61,7 @@ impl Stand {
                 for (k, &roll) in self.rolls.iter().enumerate() {
                     let name = format!("1{}{}{}", i + 1, j + 1, k + 1);
                     let pose = aim.view(&turned, self.distance, roll).ok_or_else(|| StationError::Undetermined(name.clone()))?;
-                    stations.push(Station { name, pose, bend });
+                    stations.push(Station { bend, ..Station::new(name, pose) });
                 }
             }
         }

@@ -74,8 +74,9 @@ impl<'a> Campaign<'a> {
         let (is_control, is_check) = (is(&transfer.control), is(&transfer.check));
         let image = |station: &calibench_synth::stations::Station| {
             let view = View { field, camera: &subject.camera, local: None, pose: &station.pose };
-            let seen =
-                view.seen(subject.imaging.optics.reach()).map_err(|source| RunError::View { station: station.name.clone(), source })?;
+            let seen = view
+                .seen(station.own.optics(&subject.imaging.optics).reach())
+                .map_err(|source| RunError::View { station: station.name.clone(), source })?;
             let used = seen.truth().into_iter().enumerate().filter(|(target, _)| is_control[*target] || is_check[*target]);
             Ok(used.filter(|(_, truth)| is_pointed_at(subject, truth)).filter_map(|(target, truth)| Some((target, truth.at?))).collect())
         };

@@ -92,7 +92,7 @@ impl Networks {
             let at = |station: &Station| Station {
                 name: mount.image(&station.name),
                 pose: mounted(&mount.pose, &station.pose),
-                bend: station.bend,
+                ..station.clone()
             };
             stations.iter().map(at).collect::<Vec<_>>()
         };

@@ -76,6 +76,17 @@ fn gamma_is_applied_to_the_image() {
 }
 
 #[test]
+fn a_veil_is_light_that_exposure_leaves_alone_and_a_filter_does_not() {
+    let light = || Image::new(2, 1, vec![0.25, 0.5]);
+    let veiled = |veil: f64, filter: Option<ColourFilter>| Design { exposure: 0.5, veil, filter, ..Design::default() };
+    assert_eq!(expose(veiled(-0.25, None), light(), KEY).image.grey(), [-0.125, 0.0]);
+    let filter = ColourFilter { pattern: Pattern::Rggb, sensitivity: [0.5, 1.0, 1.0] };
+    assert_eq!(expose(veiled(0.125, Some(filter)), light(), KEY).image.grey(), [0.125, 0.375]);
+    let sensor = Sensor::new(veiled(0.125, None)).unwrap();
+    assert_eq!(sensor.mean(0.5), Some(0.375));
+}
+
+#[test]
 fn the_output_has_its_levels() {
     for (bits, top) in [(8, 255.0), (12, 4095.0), (16, 65535.0)] {
         let light = Image::from_fn(256, 4, |x, y| (x as f32 + 0.3 * y as f32) / 256.0);
