@@ -1,6 +1,7 @@
 //! What a twin is made of, and how it comes nearer to what photographs look like.
 
 use crate::look::{Figure, Light, Look, NoiseLine};
+use crate::tone::{LONGEST, Tone};
 
 /// The variance that a photosite of full width adds to any line spread, px^2.
 const PIXEL: f64 = 1.0 / 12.0;
@@ -25,7 +26,11 @@ pub struct Design {
     pub views: Vec<ViewDesign>,
     /// How much larger the variance of blur is in the frame's corners, px^2.
     pub corner: f64,
-    /// Noise against level.
+    /// The curve from light to grey.
+    pub tone: Tone,
+    /// Whether a colour filter's mosaic was interpolated to grey.
+    pub demosaiced: bool,
+    /// Noise against light.
     pub noise: NoiseLine,
     /// Standard deviation of the Gaussian that smooths noise, px; 0: it is white.
     pub noise_blur: f64,
@@ -39,6 +44,8 @@ pub struct Design {
 
 /// How much sharpening makes an overshoot of the whole contrast, about.
 pub(crate) const HALO_GAIN: f64 = 12.0;
+/// How long a shoulder is whose profiles are asymmetric by the whole contrast, about.
+const TONE_GAIN: f64 = 6.0;
 /// Share of light in a tail at most.
 const MOST_TAIL: f64 = 0.4;
 /// Amount of sharpening at most.
@@ -47,19 +54,24 @@ const MOST_SHARPENING: f64 = 3.0;
 const MOST_NOISE_BLUR: f64 = 2.0;
 
 impl Design {
-    /// A first one, that of photographs that look so. Views without a look of their own have that of the others.
-    pub fn first(look: &Look) -> Option<Self> {
-        let usual = look.lights.iter().flatten().next().copied()?;
+    /// A first one, that of photographs that look so, with a filter's mosaic or without. Views without a look of their own have that of the others.
+    pub fn first(look: &Look, demosaiced: bool) -> Option<Self> {
+        let tone = Tone::default();
+        let lights = look.lights(tone);
+        let usual = lights.iter().flatten().next().copied()?;
         let spread = look.spread().powi(2);
         let view = |(light, spreads): (&Option<Light>, &Option<[f64; 3]>)| {
             let [xx, xy, yy] = spreads.unwrap_or([spread, 0.0, spread]);
             ViewDesign { light: light.unwrap_or(usual), blur: [xx - PIXEL, xy, yy - PIXEL] }
         };
         Some(Self {
-            views: look.lights.iter().zip(&look.spreads).map(view).collect(),
+            views: lights.iter().zip(&look.spreads).map(view).collect(),
             corner: look.corner,
-            noise: look.noise,
-            noise_blur: look.correlation.map_or(0.0, |figure| blur_of(figure.value)),
+            tone,
+            demosaiced,
+            noise: look.noise(tone),
+            // Interpolation of a mosaic smooths noise by itself.
+            noise_blur: look.correlation.filter(|_| !demosaiced).map_or(0.0, |figure| blur_of(figure.value)),
             halo: 0.0,
             ink_spread: look.shift.map_or(0.0, |figure| figure.value),
             raggedness: 0.0,
@@ -71,7 +83,10 @@ impl Design {
     #[must_use]
     pub fn nearer(&self, real: &Look, twin: &Look, before: Option<(&Self, &Look)>) -> Self {
         let mut next = self.clone();
-        let views = next.views.iter_mut().zip(real.lights.iter().zip(&twin.lights)).zip(real.spreads.iter().zip(&twin.spreads));
+        let wanted = |real: Option<Figure>, twin: Option<Figure>| real.zip(twin).map_or(0.0, |(real, twin)| real.value - twin.value);
+        next.tone.shoulder = (self.tone.shoulder + TONE_GAIN * wanted(real.asymmetry, twin.asymmetry)).clamp(0.0, LONGEST);
+        let (lights, own) = (real.lights(next.tone), twin.lights(self.tone));
+        let views = next.views.iter_mut().zip(lights.iter().zip(&own)).zip(real.spreads.iter().zip(&twin.spreads));
         for ((view, lights), spreads) in views {
             if let (Some(real), Some(twin)) = lights {
                 view.light.exposure *= real.exposure / twin.exposure;
@@ -83,11 +98,11 @@ impl Design {
             }
         }
         next.corner += real.corner - twin.corner;
+        let (of_real, of_twin) = (real.noise(next.tone), twin.noise(self.tone));
         next.noise = NoiseLine {
-            dark: (self.noise.dark + real.noise.dark - twin.noise.dark).max(0.0),
-            slope: (self.noise.slope + real.noise.slope - twin.noise.slope).max(0.0),
+            dark: (self.noise.dark + of_real.dark - of_twin.dark).max(0.0),
+            slope: (self.noise.slope + of_real.slope - of_twin.slope).max(0.0),
         };
-        let wanted = |real: Option<Figure>, twin: Option<Figure>| real.zip(twin).map_or(0.0, |(real, twin)| real.value - twin.value);
         let correlation = correlation_of(self.noise_blur) + wanted(real.correlation, twin.correlation);
         next.noise_blur = blur_of(correlation);
         let gain = |usual: f64, change: f64, change_of_look: f64| {

@@ -7,6 +7,7 @@ mod geometry;
 pub mod look;
 mod made_of;
 pub mod score;
+mod tone;
 mod written;
 
 /// The example of the README.
@@ -22,4 +23,5 @@ pub use fitted::{Fitted, fitted};
 pub use geometry::{Edge, Geometry, Square};
 pub use look::{Look, ViewLook};
 pub use made_of::{Part, made_of};
+pub use tone::Tone;
 pub use written::{Scene, written};

@@ -34,7 +34,7 @@ pub fn made_of(real: &Look, found: &Fitted, square: f64) -> Vec<Part> {
     let around = |value: f64, sigma: Option<f64>, low: f64| sigma.map(|sigma| [(value - NORMAL * sigma).max(low), value + NORMAL * sigma]);
     let variance = design.views.iter().map(|view| 0.5 * (view.blur[0] + view.blur[2])).sum::<f64>() / design.views.len().max(1) as f64;
     let (blur, of_blur) = root(variance, both(real.variance, twin.variance), 1.0);
-    let noise = design.noise.at(real.level).sqrt();
+    let noise = design.noise.at(design.tone.light(real.level)).sqrt();
     let of_noise = around(noise, both(Some(real.noise_middle), Some(twin.noise_middle)), 0.0);
     let of_smoothing = both(real.correlation, twin.correlation).map(|sigma| smoothing(design, sigma));
     let of_halo = around(design.halo, both(real.halo, twin.halo).map(|sigma| HALO_GAIN * sigma), f64::NEG_INFINITY);

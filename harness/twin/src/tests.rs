@@ -11,7 +11,7 @@ use calibench_synth::view::View;
 use nalgebra::{Point3, Vector3};
 
 use crate::look::{across, INK, Light, Look, PAPER, ViewLook, noise_line};
-use crate::{Design, Geometry, fitted};
+use crate::{Design, Geometry, Tone, fitted};
 
 const KEY: Key<'_> = Key { seed: 5, of: "twin", trial: 0, view: "", target: "" };
 const SIZE: [f64; 2] = [640.0, 480.0];
@@ -92,7 +92,7 @@ fn a_motion_widens_edges_by_its_part_across_them() {
             assert!((found / expected - 1.0).abs() < 0.12, "{x} {y}: {found} {expected}");
         }
     }
-    let smears = Design::first(&look).unwrap().views.into_iter().map(|view| view.smear());
+    let smears = Design::first(&look, false).unwrap().views.into_iter().map(|view| view.smear());
     assert!(smears.into_iter().all(|smear| smear.motion.is_some_and(|[dx, dy]| dx.hypot(dy) > 2.0 && dx * dy >= -0.1)));
 }
 
@@ -100,7 +100,7 @@ fn a_motion_widens_edges_by_its_part_across_them() {
 fn light_and_its_gradient_are_found() {
     let gradient = Gradient { x: 0.3, y: -0.2, per: Per::Frame };
     let look = look(&Optics { blur: 0.7, ..Optics::default() }, &SensorDesign { gradient: Some(gradient), ..white(0.002) });
-    for light in look.lights {
+    for light in look.lights(Tone::default()) {
         let Light { exposure, veil, gradient: [x, y] } = light.unwrap();
         assert!((exposure - 0.8).abs() < 0.01 && veil.abs() < 0.005, "{light:?}");
         assert!((x - 0.3).abs() < 0.02 && (y + 0.2).abs() < 0.02, "{light:?}");
@@ -110,7 +110,7 @@ fn light_and_its_gradient_are_found() {
 #[test]
 fn noise_and_its_whiteness_are_found() {
     let looks = looks(&Optics { blur: 0.7, ..Optics::default() }, &white(0.01));
-    let line = noise_line(looks.iter().flat_map(|view| &view.squares)).unwrap();
+    let line = noise_line(&looks.iter().flat_map(|view| view.squares.clone()).collect::<Vec<_>>(), Tone::default()).unwrap();
     assert!((line.at(0.4).sqrt() / 0.01 - 1.0).abs() < 0.03, "{line:?}");
     let all: Vec<f64> = looks.iter().flat_map(|view| &view.squares).map(|square| square.correlation[0]).collect();
     assert!((all.iter().sum::<f64>() / all.len() as f64).abs() < 0.03);

@@ -48,6 +48,7 @@ pub fn written(scene: &Scene, design: &Design) -> String {
     let mut text = head(scene);
     testfield(&mut text, scene, design);
     imaging(&mut text, scene, design);
+    let gain = gain(design);
     for ((name, pose), view) in scene.stations.iter().zip(&design.views) {
         let [omega, phi, kappa] = pose.angles().map(f64::to_degrees);
         let smear = view.smear();
@@ -61,7 +62,7 @@ pub fn written(scene: &Scene, design: &Design) -> String {
             _ = writeln!(text, "motion = [{dx:.4}, {dy:.4}]");
         }
         let [gx, gy] = light.gradient;
-        _ = writeln!(text, "exposure = {:.5}\nveil = {:.5}\ngradient_across = [{gx:.5}, {gy:.5}]", light.exposure, light.veil);
+        _ = writeln!(text, "exposure = {:.5}\nveil = {:.5}\ngradient_across = [{gx:.5}, {gy:.5}]", light.exposure / gain, light.veil / gain);
     }
     text
 }
@@ -77,7 +78,7 @@ fn testfield(text: &mut String, scene: &Scene, design: &Design) {
     let (paper, ink) = if scene.inverted { (INK, PAPER) } else { (PAPER, INK) };
     _ = write!(
         text,
-        "\n[testfield]\nkind = \"board\"\nunit = \"units\"\nboard = \"chessboard:{}x{}:{}\"\ncorners = {:?}\nmargin = {}\npaper = {paper}\nink = {ink}\nbackground = 0.4\n",
+        "\n[testfield]\nkind = \"board\"\nunit = \"mm\"\nboard = \"chessboard:{}x{}:{}\"\ncorners = {:?}\nmargin = {}\npaper = {paper}\nink = {ink}\nbackground = 0.4\n",
         scene.columns, scene.rows, scene.square, scene.board, scene.square
     );
     if design.ink_spread.abs() > NOTHING {
@@ -97,8 +98,9 @@ fn imaging(text: &mut String, scene: &Scene, design: &Design) {
     if design.halo < -1e-4 {
         _ = writeln!(text, "tail = {:.4}\ntail_blur = {:.4}", -design.halo, 3.0 * corner);
     }
-    let (dark, slope) = (design.noise.dark, design.noise.slope);
-    let deepest = if scene.bits > 8 { 16 } else { 12 };
+    let gain = gain(design);
+    let (dark, slope) = (design.noise.dark / (gain * gain), design.noise.slope / gain);
+    let deepest = if scene.bits > 8 || design.tone.is_bent() { 16 } else { 12 };
     text.push_str("\n[sensor]\n");
     if slope > 0.02 * dark && slope > 1e-9 {
         let electrons = 1.0 / slope;
@@ -107,6 +109,12 @@ fn imaging(text: &mut String, scene: &Scene, design: &Design) {
         _ = writeln!(text, "grey_noise = {:.6}", dark.sqrt());
     }
     _ = writeln!(text, "adc_bits = {deepest}\nbits = {}", if scene.bits > 8 { 16 } else { 8 });
+    if design.demosaiced {
+        text.push_str("filter = \"rggb\"\ndemosaic = \"grey\"\n");
+    }
+    if design.tone.is_bent() {
+        _ = writeln!(text, "shoulder = {{ start = {:.4}, gain = {gain} }}", 1.0 - design.tone.shoulder);
+    }
     if design.noise_blur > 0.05 {
         _ = writeln!(text, "noise_blur = {:.4}", design.noise_blur);
     }
@@ -117,4 +125,9 @@ fn imaging(text: &mut String, scene: &Scene, design: &Design) {
         let rows: Vec<String> = tables.chunks(8).map(|row| format!("    {},", row.iter().map(u8::to_string).collect::<Vec<_>>().join(", "))).collect();
         _ = writeln!(text, "jpeg_tables = [\n{}\n]", rows.join("\n"));
     }
+}
+
+/// How many times the white of the images the brightest light is that the sensor holds: what a shoulder needs.
+fn gain(design: &Design) -> f64 {
+    if design.tone.is_bent() { 4.0 } else { 1.0 }
 }

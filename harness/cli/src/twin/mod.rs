@@ -248,5 +248,15 @@ fn looks(reader: &Reader, modelled: &Modelled, geometry: &Geometry) -> Result<Ve
         let path = place.map(|place| &reader.photos()[place]).ok_or_else(|| Failure::input(format!("no photograph is called {station}")))?;
         Ok(ViewLook::of(&reader.read(path)?, geometry, pose))
     };
-    modelled.stations.par_iter().map(one).collect()
+    let all: Vec<ViewLook> = modelled.stations.par_iter().map(one).collect::<Result<_, Failure>>()?;
+    if let Ok(path) = std::env::var("TWIN_DUMP") {
+        let mut text = String::new();
+        for (look, (name, _)) in all.iter().zip(&modelled.stations) {
+            for e in &look.edges {
+                text += &format!("{name},{},{},{},{},{},{},{},{},{}\n", e.at[0], e.at[1], e.normal[0], e.normal[1], e.shift, e.spread, e.raggedness, e.levels[0], e.levels[1]);
+            }
+        }
+        std::fs::write(path, text)?;
+    }
+    Ok(all)
 }

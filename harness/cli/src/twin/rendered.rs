@@ -52,7 +52,8 @@ impl<'a> Studio<'a> {
 
     /// The text of a design's scenario.
     pub fn text(&self, design: &Design) -> String {
-        written(&self.scene, design)
+        let text = written(&self.scene, design); // TEMP
+        text.lines().filter(|line| !["corners", "ragged", "ink_spread", "noise_blur", "sharpening", "tail"].iter().any(|key| line.starts_with(key))).map(|line| format!("{line}\n")).collect()
     }
 
     /// A scenario whose files are those of the folder.

@@ -122,6 +122,9 @@ fn figures(look: &Look) -> Vec<(&'static str, &'static str, Option<Figure>)> {
         ("correlation of noise with the next pixel", "", look.correlation),
         ("overshoot of edges (below 0: tails)", "% of the contrast", times(look.halo, 100.0)),
         ("raggedness: edges in pieces of 2 px about a straight line", "px RMS", root(look.raggedness, 1.0)),
+        ("raggedness of edges along rows or columns", "px RMS", root(look.raggedness_by[0], 1.0)),
+        ("raggedness of edges askew", "px RMS", root(look.raggedness_by[1], 1.0)),
+        ("asymmetry of edges: white is full, or the curve is bent", "% of the contrast", times(look.asymmetry, 100.0)),
         ("edges stand towards the bright side by", "% of a square", times(look.shift, 100.0)),
         ("edges bright to the right or below, less the others: spread", "px", look.polarity),
     ]

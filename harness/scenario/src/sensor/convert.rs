@@ -35,8 +35,15 @@ const NOISES: [&[&str]; 4] = [
 ];
 
 /// Keys that exclude each other.
-const EXCLUSIVE: [(&str, &str); 4] =
-    [("vignetting", "cos4"), ("gradient_per_pixel", "gradient_across"), ("electrons", "photons"), ("gamma", "srgb")];
+const EXCLUSIVE: [(&str, &str); 7] = [
+    ("vignetting", "cos4"),
+    ("gradient_per_pixel", "gradient_across"),
+    ("electrons", "photons"),
+    ("gamma", "srgb"),
+    ("gamma", "shoulder"),
+    ("srgb", "shoulder"),
+    ("jpeg_quality", "jpeg_tables"),
+];
 
 /// Keys that say nothing without another.
 const NEEDS: [(&str, &[&str]); 9] = [
@@ -127,6 +134,7 @@ pub(super) fn setup(wire: &SensorWire, keys: &Keys, around: &Surroundings, probl
         gamma: gamma(wire),
         output: wire.bits.map(|bits| bits.0),
         jpeg: wire.jpeg_quality.map(|quality| quality.0),
+        tables: wire.jpeg_tables.map(|table| table.0.map(|step| step.0)),
     };
     let sensor = Sensor::new(design).map_err(|error| problems.push(refused(&error, keys))).ok()?;
     Some(SensorSetup { sensor, row_jitter: wire.row_jitter.map_or(0.0, |jitter| jitter.0) })
@@ -229,5 +237,6 @@ fn demosaic(to: DemosaicWire, wire: &SensorWire) -> Demosaic {
 }
 
 fn gamma(wire: &SensorWire) -> Option<Gamma> {
-    wire.gamma.map(|gamma| Gamma::Power(gamma.0)).or(wire.srgb.filter(|&srgb| srgb).map(|_| Gamma::Srgb))
+    let shoulder = || wire.shoulder.as_ref().map(|shoulder| Gamma::Shoulder { start: shoulder.start.0, gain: shoulder.gain.0 });
+    wire.gamma.map(|gamma| Gamma::Power(gamma.0)).or(wire.srgb.filter(|&srgb| srgb).map(|_| Gamma::Srgb)).or_else(shoulder)
 }

@@ -37,8 +37,14 @@ bounded! {
     Offset(f64), f64 "f64", 0.0, 32767.0;
     /// An exponent.
     GammaExponent(f64), f64 "f64", 0.1, 10.0;
+    /// A grey value at which a shoulder begins.
+    ShoulderStart(f64), f64 "f64", 0.0, 0.99;
+    /// The slope of a curve.
+    ShoulderGain(f64), f64 "f64", 1.0, 64.0;
     /// Quality of JPEG.
     Quality(u8), i64 "i64", 1, 100;
+    /// A step of JPEG's quantisation.
+    TableStep(u8), i64 "i64", 1, 255;
     /// A standard deviation of rows' places, px.
     Jitter(f64), f64 "f64", 0.0, 100.0;
 }

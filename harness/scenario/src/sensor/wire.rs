@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::numbers::{
     Coefficient, ConverterBits, Current, Decibel, Electron, Exposure, Factor, GammaExponent, Gradient, Jitter, Numbers, Offset, Percent,
-    Positive, Quality, QuantumEfficiency, Sensitivity, Time,
+    Positive, Quality, QuantumEfficiency, Sensitivity, ShoulderGain, ShoulderStart, TableStep, Time,
 };
 use crate::wire::{Bits, GreyNoise, Position};
 
@@ -72,12 +72,27 @@ pub struct SensorWire {
     pub gamma: Option<GammaExponent>,
     /// true: the curve of sRGB. Not beside `gamma`.
     pub srgb: Option<bool>,
+    /// A shoulder as of films, { start, gain }: grey is `gain` times light up to `start`, and beyond it ever less, towards 1. Not beside `gamma` or `srgb`.
+    pub shoulder: Option<ShoulderWire>,
     /// Bits of the image: 8, 12 or 16. Default: as the converter has it, or 8 with `jpeg_quality`.
     pub bits: Option<Bits>,
     /// Quality of a JPEG that the image goes through, 1 to 100.
     pub jpeg_quality: Option<Quality>,
+    /// The quantisation table of a JPEG that the image goes through, 64 numbers row by row, 1 to 255 each. Not beside `jpeg_quality`.
+    pub jpeg_tables: Option<Numbers<TableStep, 64>>,
     /// Row jitter: standard deviation of the shift of each row along x, px. Default 0.
     pub row_jitter: Option<Jitter>,
+}
+
+/// A shoulder of the curve from light to grey.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
+pub struct ShoulderWire {
+    /// Grey value at which it begins.
+    pub start: ShoulderStart,
+    /// Slope of the curve below that.
+    pub gain: ShoulderGain,
 }
 
 /// A Bayer pattern.

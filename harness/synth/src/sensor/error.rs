@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::Design;
+
 /// Why a sensor cannot be, or cannot write an image.
 #[derive(Debug, Error)]
 pub enum SensorError {
@@ -59,4 +61,14 @@ pub(super) fn check_bits(what: &'static str, bits: Option<u32>, known: &[u32], e
         Some(bits) if !known.contains(&bits) => Err(SensorError::Bits { what, bits, expected }),
         _ => Ok(()),
     }
+}
+
+/// A table for JPEG of 8 bits without zeros, and no quality beside it.
+pub(super) fn check_tables(design: &Design) -> Result<(), SensorError> {
+    let Some(table) = &design.tables else { return Ok(()) };
+    if let Some(bits) = design.output.filter(|bits| *bits != 8) {
+        return Err(SensorError::JpegBits(bits));
+    }
+    check("JPEG's quality beside its table", f64::from(design.jpeg.unwrap_or(0)), 0.0, 0.0)?;
+    check("a step of JPEG's table", table.iter().copied().min().map_or(1.0, f64::from), 1.0, 255.0)
 }

@@ -18,6 +18,7 @@ mod jitter;
 mod jpeg;
 mod normal;
 mod poisson;
+mod quantised;
 mod rows;
 mod shading;
 mod statistics;
@@ -33,11 +34,12 @@ use rayon::prelude::*;
 pub use demosaic::{Demosaic, DemosaicTo};
 pub use electrons::Electrons;
 pub use error::SensorError;
-use error::{check, check_bits};
+use error::{check, check_bits, check_tables};
 pub use filter::{ColourFilter, Pattern};
 pub use gamma::Gamma;
 pub use jitter::row_shifts;
 pub use jpeg::through_jpeg;
+pub use quantised::through_tables;
 pub use shading::{FallOff, Gradient, Per, Vignetting};
 
 use calibench_random::Key;
@@ -70,6 +72,8 @@ pub struct Design {
     pub output: Option<u32>,
     /// JPEG of this quality, 1 to 100.
     pub jpeg: Option<u8>,
+    /// JPEG with this quantisation table, row by row, 1 to 255 each. Not beside `jpeg`.
+    pub tables: Option<[u8; 64]>,
 }
 
 /// How the noise is described: exactly one way.
@@ -119,6 +123,7 @@ impl Default for Design {
             gamma: None,
             output: None,
             jpeg: None,
+            tables: None,
         }
     }
 }
@@ -203,6 +208,7 @@ impl Sensor {
             design.filter.ok_or(SensorError::NoFilter)?;
         }
         design.gamma.map_or(Ok(()), Gamma::check)?;
+        check_tables(&design)?;
         match (design.jpeg, design.output) {
             (Some(_), Some(bits)) if bits != 8 => return Err(SensorError::JpegBits(bits)),
             (Some(quality), _) => check("the quality of JPEG", f64::from(quality), 1.0, 100.0)?,
@@ -213,7 +219,7 @@ impl Sensor {
 
     /// Bits of the image that it hands out; `None` if nothing quantises it.
     pub fn bits(&self) -> Option<u32> {
-        self.design.jpeg.map(|_| 8).or(self.design.output).or(self.design.converter)
+        self.design.jpeg.map(|_| 8).or(self.design.tables.map(|_| 8)).or(self.design.output).or(self.design.converter)
     }
 
     /// What it is made of.
@@ -244,7 +250,7 @@ impl Sensor {
 
     /// Whether [`Sensor::develop`] leaves exposed rows as they are: they are then final, and the image may be written strip by strip.
     pub fn works_by_rows(&self) -> bool {
-        self.design.demosaic.is_none() && self.design.jpeg.is_none()
+        self.design.demosaic.is_none() && self.design.jpeg.is_none() && self.design.tables.is_none()
     }
 
     /// The stages that need the whole image: demosaic with what follows it, and JPEG. `exposed` are all rows from [`Sensor::expose_rows`].
@@ -261,9 +267,10 @@ impl Sensor {
             let rows = exposed.grey_mut().par_chunks_mut(width);
             clipped = rows.map(|row| self.finish_row(row)).reduce(Clipped::default, Add::add);
         }
-        let image = match self.design.jpeg {
-            Some(quality) => through_jpeg(exposed, quality)?,
-            None => exposed,
+        let image = match (self.design.jpeg, &self.design.tables) {
+            (Some(quality), _) => through_jpeg(exposed, quality)?,
+            (None, Some(table)) => through_tables(exposed, table),
+            (None, None) => exposed,
         };
         Ok((image, clipped))
     }

@@ -117,7 +117,7 @@ impl Sensor {
                 *grey = gamma.encode(f64::from(grey.clamp(0.0, 1.0))) as f32;
             }
         }
-        let output = design.output.or(design.jpeg.map(|_| 8));
+        let output = design.output.or(design.jpeg.map(|_| 8)).or(design.tables.map(|_| 8));
         let changed = design.demosaic.is_some() || design.gamma.is_some();
         match output {
             Some(bits) if changed || output != design.converter => clipped + Converter::new(bits, 0.0, 1.0).convert_plain(row),

@@ -3,11 +3,12 @@
 use calibench_model::median;
 
 use super::square::SquareFit;
+use crate::tone::Tone;
 
 /// Bins of level.
 const BINS: usize = 8;
 
-/// Variance of grey values = dark + slope x level, fractions of full scale.
+/// Variance of light = dark + slope x light, fractions of full scale where grey is light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NoiseLine {
     /// At level 0.
@@ -35,9 +36,19 @@ pub fn binned<'s>(squares: impl Iterator<Item = &'s SquareFit>) -> Vec<[f64; 3]>
     (0..BINS).filter_map(of).collect()
 }
 
-/// The line through the bins, none below zero; `None` of no square.
-pub fn noise_line<'s>(squares: impl Iterator<Item = &'s SquareFit>) -> Option<NoiseLine> {
-    let bins = binned(squares);
+/// Squares on a steeper part of the curve tell the noise of light.
+const FLATTEST: f64 = 0.25;
+
+/// The line through bins of the light under a curve, none below zero; `None` of no square.
+pub fn noise_line(squares: &[SquareFit], tone: Tone) -> Option<NoiseLine> {
+    let told = |square: &&SquareFit| tone.slope(square.level) >= FLATTEST;
+    let light = |square: &SquareFit| SquareFit {
+        level: tone.light(square.level),
+        variance: square.variance / tone.slope(square.level).powi(2),
+        ..*square
+    };
+    let lit: Vec<SquareFit> = squares.iter().filter(told).map(light).collect();
+    let bins = binned(lit.iter());
     let total: f64 = bins.iter().map(|bin| bin[2]).sum();
     if total == 0.0 {
         return None;
