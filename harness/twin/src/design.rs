@@ -32,8 +32,8 @@ pub struct Design {
     pub demosaiced: bool,
     /// Noise against light.
     pub noise: NoiseLine,
-    /// Standard deviation of the Gaussian that smooths noise, px; 0: it is white.
-    pub noise_blur: f64,
+    /// Standard deviation of the Gaussian that smooths the developed image, px; 0: none.
+    pub smoothing: f64,
     /// Positive: amount of an unsharp mask. Negative: less the share of the light in a tail.
     pub halo: f64,
     /// Dark areas grow by this on every side, as a share of a square.
@@ -50,8 +50,8 @@ const TONE_GAIN: f64 = 6.0;
 const MOST_TAIL: f64 = 0.4;
 /// Amount of sharpening at most.
 const MOST_SHARPENING: f64 = 3.0;
-/// Noise is smoothed by no more than this, px.
-const MOST_NOISE_BLUR: f64 = 2.0;
+/// An image is smoothed by no more than this, px.
+const MOST_SMOOTHING: f64 = 2.0;
 
 impl Design {
     /// A first one, that of photographs that look so, with a filter's mosaic or without. Views without a look of their own have that of the others.
@@ -71,7 +71,7 @@ impl Design {
             demosaiced,
             noise: look.noise(tone),
             // Interpolation of a mosaic smooths noise by itself.
-            noise_blur: look.correlation.filter(|_| !demosaiced).map_or(0.0, |figure| blur_of(figure.value)),
+            smoothing: look.correlation.filter(|_| !demosaiced).map_or(0.0, |figure| blur_of(figure.value)),
             halo: 0.0,
             ink_spread: look.shift.map_or(0.0, |figure| figure.value),
             raggedness: 0.0,
@@ -95,16 +95,14 @@ impl Design {
             }
             if let (Some(real), Some(twin)) = spreads {
                 (0..3).for_each(|k| view.blur[k] += real[k] - twin[k]);
+                // Edges that are sharper than the rest of the chain allows stay so: this does not run away.
+                [0, 2].into_iter().for_each(|k| view.blur[k] = view.blur[k].max(LEAST_BLUR * LEAST_BLUR));
             }
         }
         next.corner += real.corner - twin.corner;
-        let (of_real, of_twin) = (real.noise(next.tone), twin.noise(self.tone));
-        next.noise = NoiseLine {
-            dark: (self.noise.dark + of_real.dark - of_twin.dark).max(0.0),
-            slope: (self.noise.slope + of_real.slope - of_twin.slope).max(0.0),
-        };
-        let correlation = correlation_of(self.noise_blur) + wanted(real.correlation, twin.correlation);
-        next.noise_blur = blur_of(correlation);
+        next.noise = louder(self.noise, real.noise(next.tone), twin.noise(self.tone));
+        let correlation = correlation_of(self.smoothing) + wanted(real.correlation, twin.correlation);
+        next.smoothing = blur_of(correlation);
         let gain = |usual: f64, change: f64, change_of_look: f64| {
             let found = change / change_of_look;
             if found.is_finite() && found > 0.2 * usual && found < 5.0 * usual { found } else { usual }
@@ -119,6 +117,18 @@ impl Design {
         next.ink_spread += wanted(real.shift, twin.shift);
         next
     }
+}
+
+/// Levels at which noise is compared.
+const LEVELS: [f64; 2] = [0.12, 0.6];
+
+/// `noise` by as much more as the looks of photographs have than those of the twin.
+fn louder(noise: NoiseLine, real: NoiseLine, twin: NoiseLine) -> NoiseLine {
+    let at = |level: f64| noise.at(level).max(1e-10) * (real.at(level) / twin.at(level).max(1e-12)).clamp(0.1, 10.0);
+    let [low, high] = LEVELS.map(at);
+    let slope = ((high - low) / (LEVELS[1] - LEVELS[0])).max(0.0);
+    let dark = low - slope * LEVELS[0];
+    if dark >= 0.0 { NoiseLine { dark, slope } } else { NoiseLine { dark: 0.0, slope: high / LEVELS[1] } }
 }
 
 /// Blur and motion of a view.
@@ -152,5 +162,5 @@ pub(crate) fn correlation_of(blur: f64) -> f64 {
 
 /// The Gaussian that leaves this correlation, px.
 pub(crate) fn blur_of(correlation: f64) -> f64 {
-    if correlation <= 1e-3 { 0.0 } else { (-0.25 / correlation.min(0.95).ln()).sqrt().min(MOST_NOISE_BLUR) }
+    if correlation <= 1e-3 { 0.0 } else { (-0.25 / correlation.min(0.95).ln()).sqrt().min(MOST_SMOOTHING) }
 }

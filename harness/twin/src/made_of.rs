@@ -50,7 +50,7 @@ pub fn made_of(real: &Look, found: &Fitted, square: f64) -> Vec<Part> {
     vec![
         part("station.blur", "blur, mean over views", "px", blur, of_blur),
         part("sensor noise", "noise in the middle of the levels", "grey levels of 255", 255.0 * noise, of_noise.map(|ends| ends.map(|end| 255.0 * end))),
-        part("sensor.noise_blur", "smoothing of the noise", "px", design.noise_blur, of_smoothing),
+        part("sensor.smoothing", "smoothing of the developed image", "px", design.smoothing, of_smoothing),
         part(key, what, "", value, of_halo),
         part("testfield.ragged", "raggedness of edges", "object units", ragged, of_ragged),
         part("testfield.ink_spread", "growth of dark areas", "object units", design.ink_spread * square, spread),
@@ -59,6 +59,6 @@ pub fn made_of(real: &Look, found: &Fitted, square: f64) -> Vec<Part> {
 
 /// Where the smoothing of noise is whose correlation errs by `sigma`.
 fn smoothing(design: &Design, sigma: f64) -> [f64; 2] {
-    let correlation = crate::design::correlation_of(design.noise_blur);
+    let correlation = crate::design::correlation_of(design.smoothing);
     [correlation - NORMAL * sigma, correlation + NORMAL * sigma].map(crate::design::blur_of)
 }

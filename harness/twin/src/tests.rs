@@ -138,5 +138,5 @@ fn the_twin_of_a_simulation_is_made_like_it() {
         assert!((view.smear().blur / blur - 1.0).abs() < 0.03, "{:?}", view.smear());
     }
     assert!((design.noise.at(0.4).sqrt() / sigma - 1.0).abs() < 0.05, "{:?}", design.noise);
-    assert!(design.noise_blur < 0.3 && design.halo.abs() < 0.1, "{design:?}");
+    assert!(design.smoothing < 0.3 && design.halo.abs() < 0.1, "{design:?}");
 }

@@ -115,8 +115,8 @@ fn imaging(text: &mut String, scene: &Scene, design: &Design) {
     if design.tone.is_bent() {
         _ = writeln!(text, "shoulder = {{ start = {:.4}, gain = {gain} }}", 1.0 - design.tone.shoulder);
     }
-    if design.noise_blur > 0.05 {
-        _ = writeln!(text, "noise_blur = {:.4}", design.noise_blur);
+    if design.smoothing > 0.05 {
+        _ = writeln!(text, "smoothing = {:.4}", design.smoothing);
     }
     if design.halo > 1e-4 {
         _ = writeln!(text, "sharpening = {:.4}", design.halo);

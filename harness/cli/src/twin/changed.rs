@@ -77,7 +77,7 @@ impl Change {
                 design.corner *= factor * factor;
             }
             Kind::Raw => {
-                (design.noise_blur, design.halo) = (0.0, design.halo.min(0.0));
+                (design.smoothing, design.halo) = (0.0, design.halo.min(0.0));
                 return Ok(studio.raw().text(&design));
             }
             Kind::Key(path, value) => return self.keyed(&studio.text(&design), path, value),

@@ -53,7 +53,7 @@ impl<'a> Studio<'a> {
     /// The text of a design's scenario.
     pub fn text(&self, design: &Design) -> String {
         let text = written(&self.scene, design); // TEMP
-        text.lines().filter(|line| !["corners", "ragged", "ink_spread", "noise_blur", "sharpening", "tail"].iter().any(|key| line.starts_with(key))).map(|line| format!("{line}\n")).collect()
+        text.lines().filter(|line| !["corners", "ragged", "ink_spread"].iter().any(|key| line.starts_with(key))).map(|line| format!("{line}\n")).collect()
     }
 
     /// A scenario whose files are those of the folder.

@@ -6,7 +6,7 @@ use std::ops::Range;
 use calibench_diagnostics::Problem;
 use calibench_model::PixelPoint;
 use calibench_synth::sensor::{
-    ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Pattern, Per, Sensor, SensorError, Vignetting,
+    ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Processing, Pattern, Per, Sensor, SensorError, Vignetting,
 };
 
 use super::numbers::{self, Numbers};
@@ -46,7 +46,8 @@ const EXCLUSIVE: [(&str, &str); 7] = [
 ];
 
 /// Keys that say nothing without another.
-const NEEDS: [(&str, &[&str]); 9] = [
+const NEEDS: [(&str, &[&str]); 10] = [
+    ("sharpening_radius", &["sharpening"]),
     ("vignetting_centre", &["vignetting", "cos4"]),
     ("filter_sensitivity", &["filter"]),
     ("photons", &["quantum_efficiency"]),
@@ -131,6 +132,7 @@ pub(super) fn setup(wire: &SensorWire, keys: &Keys, around: &Surroundings, probl
         noise: noise?,
         converter: wire.adc_bits.map(|bits| bits.0),
         demosaic: wire.demosaic.map(|to| demosaic(to, wire)),
+        processing: processing(wire),
         gamma: gamma(wire),
         output: wire.bits.map(|bits| bits.0),
         jpeg: wire.jpeg_quality.map(|quality| quality.0),
@@ -239,4 +241,11 @@ fn demosaic(to: DemosaicWire, wire: &SensorWire) -> Demosaic {
 fn gamma(wire: &SensorWire) -> Option<Gamma> {
     let shoulder = || wire.shoulder.as_ref().map(|shoulder| Gamma::Shoulder { start: shoulder.start.0, gain: shoulder.gain.0 });
     wire.gamma.map(|gamma| Gamma::Power(gamma.0)).or(wire.srgb.filter(|&srgb| srgb).map(|_| Gamma::Srgb)).or_else(shoulder)
+}
+
+fn processing(wire: &SensorWire) -> Option<Processing> {
+    let smoothing = wire.smoothing.as_ref().map_or(0.0, |smoothing| smoothing.0);
+    let sharpening = wire.sharpening.as_ref().map_or(0.0, |sharpening| sharpening.0);
+    let radius = wire.sharpening_radius.as_ref().map_or(1.0, |radius| radius.0);
+    (wire.smoothing.is_some() || wire.sharpening.is_some()).then_some(Processing { smoothing, sharpening, radius })
 }

@@ -37,6 +37,12 @@ bounded! {
     Offset(f64), f64 "f64", 0.0, 32767.0;
     /// An exponent.
     GammaExponent(f64), f64 "f64", 0.1, 10.0;
+    /// A standard deviation of smoothing, px.
+    Smoothing(f64), f64 "f64", 0.0, 5.0;
+    /// An amount of sharpening.
+    Sharpening(f64), f64 "f64", -0.9, 5.0;
+    /// A radius of sharpening, px.
+    Radius(f64), f64 "f64", 0.1, 20.0;
     /// A grey value at which a shoulder begins.
     ShoulderStart(f64), f64 "f64", 0.0, 0.99;
     /// The slope of a curve.

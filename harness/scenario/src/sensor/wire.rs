@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::numbers::{
     Coefficient, ConverterBits, Current, Decibel, Electron, Exposure, Factor, GammaExponent, Gradient, Jitter, Numbers, Offset, Percent,
-    Positive, Quality, QuantumEfficiency, Sensitivity, ShoulderGain, ShoulderStart, TableStep, Time,
+    Positive, Quality, QuantumEfficiency, Radius, Sensitivity, Sharpening, ShoulderGain, ShoulderStart, Smoothing, TableStep, Time,
 };
 use crate::wire::{Bits, GreyNoise, Position};
 
@@ -68,6 +68,12 @@ pub struct SensorWire {
     pub demosaic: Option<DemosaicWire>,
     /// Factors of red, green and blue before the demosaic. Default: those that make a grey target grey.
     pub white_balance: Option<Numbers<Factor, 3>>,
+    /// Smoothing of the developed image, as against noise: standard deviation of a Gaussian, px, 0 to 5, on signal and noise alike. Default 0.
+    pub smoothing: Option<Smoothing>,
+    /// Sharpening of the developed image: amount a of an unsharp mask, in + a (in - Gaussian of it), -0.9 to 5. Default 0.
+    pub sharpening: Option<Sharpening>,
+    /// With `sharpening`: standard deviation of its Gaussian, px. Default 1.
+    pub sharpening_radius: Option<Radius>,
     /// Gamma: grey is light to the power of 1 / gamma. Default: linear.
     pub gamma: Option<GammaExponent>,
     /// true: the curve of sRGB. Not beside `gamma`.

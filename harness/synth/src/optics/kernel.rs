@@ -42,14 +42,18 @@ impl Kernel {
         }
         let shifts = motion(optics.motion, sigma);
         let chords = disc(optics.defocus, sigma);
-        let part = |&(share, [dx, dy]): &(f64, [f64; 2]), chord: &Chord| {
+        let part = |&(share, [dx, dy]): &(f64, [f64; 2]), chord: &Chord, (weight, sigma): (f64, f64)| {
             let down = Profile { sigma, aperture: optics.aperture, chord: 0.0 };
             let along = Profile { chord: chord.width, ..down };
             let profiles = [along, down];
             let (along, down) = (Spread::steps(&along), Spread::density(&down));
-            Part { weight: share * chord.weight, shift: [dx, dy + chord.offset], along, down, profiles }
+            Part { weight: weight * share * chord.weight, shift: [dx, dy + chord.offset], along, down, profiles }
         };
-        let parts = shifts.iter().flat_map(|shift| chords.iter().map(move |chord| part(shift, chord))).collect();
+        let tail = optics.tail.filter(|tail| tail.share > 0.0);
+        let core = (1.0 - tail.map_or(0.0, |tail| tail.share), sigma);
+        let gaussians: Vec<(f64, f64)> = std::iter::once(core).chain(tail.map(|tail| (tail.share, tail.blur.max(sigma)))).collect();
+        let each = gaussians.iter().flat_map(|gaussian| shifts.iter().map(move |shift| (gaussian, shift)));
+        let parts = each.flat_map(|(gaussian, shift)| chords.iter().map(move |chord| part(shift, chord, *gaussian))).collect();
         Self::Smooth { sigma, parts }
     }
 

@@ -27,8 +27,19 @@ pub struct Optics {
     pub defocus: f64,
     /// A straight motion during the exposure.
     pub motion: Option<Motion>,
+    /// What part of the light is spread wider.
+    pub tail: Option<Tail>,
     /// Width of the square photosite, px, at most 1: the linear fill factor.
     pub aperture: f64,
+}
+
+/// A part of the light that is spread wider, as by haze, a filter before the lens, or processing: the point spread is a sum of two Gaussians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tail {
+    /// Its share of the light, below 1.
+    pub share: f64,
+    /// Standard deviation of its Gaussian, px: everywhere in the frame.
+    pub blur: f64,
 }
 
 /// A straight motion of the picture, at constant speed, centred on the exposure's middle.
@@ -61,7 +72,7 @@ pub enum OpticsError {
 impl Default for Optics {
     /// No blur, photosites that fill their pixels.
     fn default() -> Self {
-        Self { blur: 0.0, corner_blur: None, defocus: 0.0, motion: None, aperture: 1.0 }
+        Self { blur: 0.0, corner_blur: None, defocus: 0.0, motion: None, tail: None, aperture: 1.0 }
     }
 }
 
@@ -82,6 +93,11 @@ impl Optics {
             let good = self.blur > 0.0 && corner >= self.blur && corner <= 100.0 && corner <= 20.0 * self.blur;
             range("the blur in the corners", corner, good, "at least the blur in the middle, which is not 0, and at most 20 times that")?;
         }
+        if let Some(tail) = self.tail {
+            range("the tail's share", tail.share, (0.0..=0.5).contains(&tail.share), "0 to 0.5")?;
+            let wider = self.blur > 0.0 && tail.blur >= self.corner_blur.unwrap_or(self.blur) && tail.blur <= 100.0;
+            range("the tail's blur", tail.blur, wider, "at least that of the rest of the light, which is not 0, and at most 100 px")?;
+        }
         let motion = self.motion.map_or(0.0, |motion| motion.length);
         range("the motion's length", motion, (0.0..=200.0).contains(&motion), "0 to 200 px")?;
         let needy = [("defocus disc", self.defocus), ("motion", motion)].into_iter().find(|(_, size)| *size > 0.0);
@@ -93,7 +109,7 @@ impl Optics {
 
     /// How far from a point its light falls, px.
     pub fn reach(&self) -> f64 {
-        let sigma = self.corner_blur.unwrap_or(self.blur);
+        let sigma = self.corner_blur.unwrap_or(self.blur).max(self.tail.map_or(0.0, |tail| tail.blur));
         6.0 * sigma + self.aperture / 2.0 + self.defocus + self.motion.map_or(0.0, |motion| motion.length / 2.0) + 1.0
     }
 }

@@ -125,9 +125,10 @@ pub(crate) fn stride(side: usize) -> usize {
 #[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add(sums: &mut Derivatives, pieces: &[Piece], (kernel, level): (&Kernel, &Level), [x0, y0]: [f64; 2], rules: &Rules) {
     let Kernel::Smooth { sigma, parts } = kernel else { return };
-    let variance = sigma * sigma;
     let rows = [0.0, sums.side as f64 - 1.0];
     for (part, [densities, slopes]) in parts.iter().zip(&level.spreads) {
+        // A tail stays as it is where the blur changes.
+        let variance = if part.profiles[1].sigma == *sigma { sigma * sigma } else { 0.0 };
         let mut along = Along::new(&densities[0]);
         for piece in pieces {
             each_node(piece, *sigma, rows, std::slice::from_ref(part), rules, |part, Node { at, along: [dx, dy] }| {

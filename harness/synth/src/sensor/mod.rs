@@ -2,7 +2,7 @@
 //!
 //! The stages, each optional, in the order in which light and signal pass them: vignetting and the illumination's gradient, exposure, veil, colour filter,
 //! [`Noise`] (for electrons: response non-uniformity, photon noise and dark signal, the full well, dark signal non-uniformity, read noise, row
-//! noise), converter, demosaic, gamma, output levels, JPEG. Grey values are fractions of full scale; light of 1 is what a target of reflectance 1
+//! noise), converter, demosaic, processing, gamma, output levels, JPEG. Grey values are fractions of full scale; light of 1 is what a target of reflectance 1
 //! sends before exposure. The terms and units of the noise are those of EMVA 1288.
 //!
 //! A pixel's noise depends on the [`Key`] and its place alone, so that rows may be exposed in any order and on any number of threads. The patterns
@@ -18,6 +18,7 @@ mod jitter;
 mod jpeg;
 mod normal;
 mod poisson;
+mod processing;
 mod quantised;
 mod rows;
 mod shading;
@@ -39,6 +40,7 @@ pub use filter::{ColourFilter, Pattern};
 pub use gamma::Gamma;
 pub use jitter::row_shifts;
 pub use jpeg::through_jpeg;
+pub use processing::Processing;
 pub use quantised::through_tables;
 pub use shading::{FallOff, Gradient, Per, Vignetting};
 
@@ -66,6 +68,8 @@ pub struct Design {
     pub converter: Option<u32>,
     /// The mosaic of the filter to grey. Needs the filter.
     pub demosaic: Option<Demosaic>,
+    /// What is done to the developed image before the curve.
+    pub processing: Option<Processing>,
     /// The curve from light to grey.
     pub gamma: Option<Gamma>,
     /// Bits of the image that is handed out: 8, 12 or 16; `None` leaves it as it is (8 with JPEG).
@@ -120,6 +124,7 @@ impl Default for Design {
             noise: Noise::None,
             converter: None,
             demosaic: None,
+            processing: None,
             gamma: None,
             output: None,
             jpeg: None,
@@ -207,6 +212,7 @@ impl Sensor {
             demosaic.check()?;
             design.filter.ok_or(SensorError::NoFilter)?;
         }
+        design.processing.as_ref().map_or(Ok(()), Processing::check)?;
         design.gamma.map_or(Ok(()), Gamma::check)?;
         check_tables(&design)?;
         match (design.jpeg, design.output) {
@@ -250,10 +256,20 @@ impl Sensor {
 
     /// Whether [`Sensor::develop`] leaves exposed rows as they are: they are then final, and the image may be written strip by strip.
     pub fn works_by_rows(&self) -> bool {
-        self.design.demosaic.is_none() && self.design.jpeg.is_none() && self.design.tables.is_none()
+        !self.is_finished_whole() && self.design.jpeg.is_none() && self.design.tables.is_none()
     }
 
-    /// The stages that need the whole image: demosaic with what follows it, and JPEG. `exposed` are all rows from [`Sensor::expose_rows`].
+    /// Whether rows are finished together, once the whole image is there.
+    fn is_finished_whole(&self) -> bool {
+        self.design.demosaic.is_some() || self.processing().is_some()
+    }
+
+    /// What is done to the developed image, if anything is.
+    fn processing(&self) -> Option<&Processing> {
+        self.design.processing.as_ref().filter(|processing| !processing.is_nothing())
+    }
+
+    /// The stages that need the whole image: demosaic, processing, with what follows them, and JPEG. `exposed` are all rows from [`Sensor::expose_rows`].
     ///
     /// # Errors
     /// As [`Sensor::expose`].
@@ -264,6 +280,12 @@ impl Sensor {
             let raw = exposed.grey_mut().par_chunks_mut(width).enumerate();
             raw.for_each(|(y, row)| self.balance_row(demosaic, filter, row, y));
             exposed = demosaic.interpolate(&exposed, filter);
+        }
+        if let Some(processing) = self.processing() {
+            exposed = processing.apply(exposed);
+        }
+        if self.is_finished_whole() {
+            let width = exposed.width().max(1);
             let rows = exposed.grey_mut().par_chunks_mut(width);
             clipped = rows.map(|row| self.finish_row(row)).reduce(Clipped::default, Add::add);
         }

@@ -94,7 +94,7 @@ impl Sensor {
                 Clipped { low: 0, high: scratch.full.iter().map(|&full| u64::from(full)).sum() }
             }
         };
-        if design.demosaic.is_some() { clipped } else { clipped + self.finish_row(row) }
+        if self.is_finished_whole() { clipped } else { clipped + self.finish_row(row) }
     }
 
     /// Takes the black level away and balances the colours of row `y` of the mosaic.
@@ -118,7 +118,7 @@ impl Sensor {
             }
         }
         let output = design.output.or(design.jpeg.map(|_| 8)).or(design.tables.map(|_| 8));
-        let changed = design.demosaic.is_some() || design.gamma.is_some();
+        let changed = self.is_finished_whole() || design.gamma.is_some();
         match output {
             Some(bits) if changed || output != design.converter => clipped + Converter::new(bits, 0.0, 1.0).convert_plain(row),
             _ => clipped,

@@ -6,10 +6,10 @@ use super::{Noise, Sensor};
 impl Sensor {
     /// The mean grey value (fraction of full scale) of a pixel to which shading leaves `light` (reflectance 1 is 1), where nothing is clipped:
     /// exposure, veil, dark signal and black level. `None` of a chain whose grey values are not linear in light or differ from photosite to photosite:
-    /// colour filter or gamma.
+    /// colour filter, processing or gamma.
     pub fn mean(&self, light: f64) -> Option<f64> {
         let design = &self.design;
-        if design.gamma.is_some() || design.filter.is_some() {
+        if design.gamma.is_some() || design.filter.is_some() || self.processing().is_some() {
             return None;
         }
         let exposed = light * design.exposure + design.veil;
@@ -26,7 +26,7 @@ impl Sensor {
     /// patterns as one image shows them, and quantisation as 1/12 of a squared step, its mean over grey values. Fractions of full scale, squared.
     ///
     /// Holds where nothing is clipped. `None` of a chain in which neighbours are not independent or the variance depends on more than the grey value:
-    /// row noise, demosaic, gamma, JPEG.
+    /// row noise, demosaic, processing, gamma, JPEG.
     pub fn variance(&self, grey: f64) -> Option<f64> {
         self.scatter(grey, true)
     }
@@ -34,7 +34,7 @@ impl Sensor {
     /// [`Sensor::variance`] with the camera's patterns or without them, from image to image.
     pub(super) fn scatter(&self, grey: f64, patterns: bool) -> Option<f64> {
         let design = &self.design;
-        if design.demosaic.is_some() || design.gamma.is_some() || design.jpeg.is_some() || design.tables.is_some() {
+        if design.demosaic.is_some() || design.gamma.is_some() || design.jpeg.is_some() || design.tables.is_some() || self.processing().is_some() {
             return None;
         }
         let noise = match &design.noise {
