@@ -77,7 +77,7 @@ pub struct Area {
     pub ground: f64,
 }
 
-/// A smooth bend: the height over the plane, `w = peak (1 - (s / reach)^2)`, where `s` runs along one direction from `middle`.
+/// A smooth bend: the height over the plane, `w = peak (1 - (s^2 + along t^2) / reach^2)`, where `s` runs along one direction from `middle` and `t` at a right angle to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bend {
     /// The height at the crest, along the plate's normal, object units.
@@ -88,14 +88,21 @@ pub struct Bend {
     pub across: f64,
     /// How far from the crest the height is zero, object units.
     pub reach: f64,
+    /// How much it falls along the crest, as a part of how it falls across; 0 of a cylinder, below 0 of a saddle.
+    pub along: f64,
 }
 
 impl Bend {
     /// The height at `at`, object units.
     pub fn height(&self, at: PlatePoint) -> f64 {
         let (sine, cosine) = self.across.sin_cos();
-        let s = ((at[0] - self.middle[0]) * cosine + (at[1] - self.middle[1]) * sine) / self.reach;
-        self.peak * (1.0 - s * s)
+        let (du, dv) = (at[0] - self.middle[0], at[1] - self.middle[1]);
+        let s = (du * cosine + dv * sine) / self.reach;
+        if self.along == 0.0 {
+            return self.peak * (1.0 - s * s);
+        }
+        let t = (dv * cosine - du * sine) / self.reach;
+        self.peak * (1.0 - s * s - self.along * t * t)
     }
 }
 
@@ -214,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_bend_is_zero_at_its_reach_and_highest_at_its_crest() {
-        let bend = Bend { peak: 0.5, middle: [0.0, 0.0], across: 0.0, reach: 2.0 };
+        let bend = Bend { peak: 0.5, middle: [0.0, 0.0], across: 0.0, reach: 2.0, along: 0.0 };
         let plate = plate(Some(bend));
         assert_eq!(plate.point([2.0, 0.7]), Point3::new(1.0, 4.0, 3.7));
         assert_eq!(plate.point([0.0, 0.7]), Point3::new(1.5, 2.0, 3.7));
@@ -235,7 +242,7 @@ mod tests {
     fn the_extent_holds_all_corners() {
         let field = Testfield { plates: vec![plate(None)], targets: Vec::new(), background: 0.0 };
         assert_eq!(field.extent(), Some([Point3::new(1.0, 0.0, 2.0), Point3::new(1.0, 4.0, 4.0)]));
-        let bend = Bend { peak: 0.5, middle: [0.0, 0.0], across: 0.0, reach: 2.0 };
+        let bend = Bend { peak: 0.5, middle: [0.0, 0.0], across: 0.0, reach: 2.0, along: 0.0 };
         let bent = Testfield { plates: vec![plate(Some(bend))], ..field.clone() };
         assert_eq!(bent.extent(), Some([Point3::new(1.0, 0.0, 2.0), Point3::new(1.5, 4.0, 4.0)]), "the crest is inside");
         assert_eq!(Testfield { plates: Vec::new(), ..field }.extent(), None);

@@ -62,18 +62,18 @@ impl Project<'_> {
         Ok(loaded)
     }
 
-    /// What is read with the scenario `name`: its file, its camera, its photographs.
+    /// What is read with the scenario `name`: its file, its camera, its board, its photographs.
     pub fn inputs(&self, name: &str, scenario: &Scenario) -> Inputs {
         let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
-        let camera = match &scenario.subject {
-            Subject::Views(views) => views.camera_file.clone(),
-            Subject::Scene(_) | Subject::Photographs(_) | Subject::Printed(_) => None,
+        let beside: Vec<PathBuf> = match &scenario.subject {
+            Subject::Views(views) => views.files().map(Into::into).collect(),
+            Subject::Scene(_) | Subject::Photographs(_) | Subject::Printed(_) => Vec::new(),
         };
         let photographs = match (&scenario.subject, self.data()) {
             (Subject::Photographs(found), Ok(data)) => found.files.iter().map(|file| data.join(&found.folder).join(file)).collect(),
             _ => Vec::new(),
         };
-        inputs_of(file.into_iter().chain(camera).chain(photographs))
+        inputs_of(file.into_iter().chain(beside).chain(photographs))
     }
 }
 

@@ -633,8 +633,8 @@ def merge(folders: Sequence[_Path], records: _Path) -> List[Records]:
 def report(*papers: str, root: Optional[_Path] = None) -> List[Path]:
     """Write the reports of papers, all where none is named, from the project's records alone. Their pages."""
 
-def shipped(scenario: str, *, root: Optional[_Path] = None) -> Tuple[str, str, Optional[Tuple[Path, Path]], str]:
-    """What a part needs on another machine: name, text, its camera's file (from its folder, and where it is), revision."""
+def shipped(scenario: str, *, root: Optional[_Path] = None) -> Tuple[str, str, List[Tuple[Path, Path]], str]:
+    """What a part needs on another machine: name, text, files of its camera and its board (from its folder, and where they are), revision."""
 
 def restored(class_: str, version: str, state: Any) -> Any:
     """What `pickle` calls: the object of a class that was pickled as `state`, by the same version of calibench."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
 #: A scenario as it is sent: its name, its text, the name and the bytes of its camera's file.
-_Shipped = Tuple[str, str, Optional[Tuple[str, bytes]]]
+_Shipped = Tuple[str, str, Tuple[Tuple[str, bytes], ...]]
 
 
 def run(
@@ -51,8 +51,8 @@ def run(
 
     if parts < 1:
         raise InputError(f"parts: {parts}; expected 1 or more")
-    name, text, camera, revision = shipped(scenario, root=root)
-    sent = (name, text, None if camera is None else (str(camera[0]), camera[1].read_bytes()))
+    name, text, files, revision = shipped(scenario, root=root)
+    sent = (name, text, tuple((str(own), path.read_bytes()) for own, path in files))
     options = {"methods": list(methods), "trials": trials, "seed": seed, "revision": revision}
     # Parts of another run are none of this one's.
     identity = hashlib.sha256(repr((sent, sorted(options.items()), parts)).encode()).hexdigest()[:16]
@@ -107,17 +107,17 @@ def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
 
 def _unpacked(sent: _Shipped, here: Path) -> str:
     """A project that holds the scenario alone; its name there."""
-    name, text, camera = sent
+    name, text, files = sent
     if name.startswith("local/"):
         raise InputError(f"{name}: a scenario of a file of one's own; expected one of a project, in its folder scenarios/")
     (here / "reference").mkdir()
     file = here / "scenarios" / f"{name}.toml"
     file.parent.mkdir(parents=True)
     file.write_text(text, encoding="utf-8")
-    if camera is not None:
-        beside = file.parent / camera[0]
+    for own, content in files:
+        beside = file.parent / own
         beside.parent.mkdir(parents=True, exist_ok=True)
-        beside.write_bytes(camera[1])
+        beside.write_bytes(content)
     return name
 
 

@@ -252,22 +252,22 @@ pub fn merge(py: Python<'_>, folders: Vec<PathBuf>, records: PathBuf) -> PyResul
 /// A file beside a scenario: its path from the scenario's folder, and where it is.
 type Beside = (PathBuf, PathBuf);
 
-/// What a part needs on another machine: a scenario's name, its text, its camera's file if it has one, and the revision of the code.
+/// What a part needs on another machine: a scenario's name, its text, the files of its camera and its board if it has them, and the revision of the code.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, root = None))]
-pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<Beside>, String)> {
+pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Vec<Beside>, String)> {
     with_project(root, |here| {
         let named = scenario_of(py, here, scenario)?;
-        let camera = match &named.subject {
-            Subject::Views(views) => views.camera_file.clone(),
-            Subject::Photographs(_) | Subject::Scene(_) | Subject::Printed(_) => None,
+        let files: Vec<PathBuf> = match &named.subject {
+            Subject::Views(views) => views.files().map(Path::to_owned).collect(),
+            Subject::Photographs(_) | Subject::Scene(_) | Subject::Printed(_) => Vec::new(),
         };
         let folder = here.root().map_err(project)?.join("scenarios").join(&named.name);
         let beside = |path: PathBuf| {
             let own = folder.parent().and_then(|folder| path.strip_prefix(folder).ok()).map(Path::to_owned);
             own.map(|own| (own, path.clone()))
-                .ok_or_else(|| input(format!("{}: the camera's file is not in the scenario's folder", path.display())))
+                .ok_or_else(|| input(format!("{}: the file is not in the scenario's folder", path.display())))
         };
-        Ok((named.name.clone(), named.text.clone(), camera.map(beside).transpose()?, here.revision().map_err(project)?))
+        Ok((named.name.clone(), named.text.clone(), files.into_iter().map(beside).collect::<PyResult<_>>()?, here.revision().map_err(project)?))
     })
 }

@@ -25,13 +25,19 @@ use crate::reuse::{self, Reuse, Stamp};
 use crate::theory::write_theory;
 use crate::{Order, Plan, RunError};
 
-/// Copies the scenario's camera file to where the scenario as it was run looks for it.
-fn keep_camera(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
+/// Copies the scenario's files, of camera and board, to where the scenario as it was run looks for them.
+fn keep_files(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
     let Subject::Views(views) = &scenario.subject else { return Ok(()) };
-    let named = views.camera_file.as_deref().and_then(|path| Some((path, path.file_name()?.to_str()?)));
-    let Some((path, name)) = named else { return Ok(()) };
-    let bytes = fs::read(path).map_err(|error| at(path, &error))?;
-    Ok(folder.folder(KEPT)?.write(name, |file| file.write_all(&bytes))?)
+    let named: Vec<(&Path, &str)> = views.files().filter_map(|path| Some((path, path.file_name()?.to_str()?))).collect();
+    if named.is_empty() {
+        return Ok(());
+    }
+    let kept = folder.folder(KEPT)?;
+    for (path, name) in named {
+        let bytes = fs::read(path).map_err(|error| at(path, &error))?;
+        kept.write::<io::Error>(name, |file| file.write_all(&bytes))?;
+    }
+    Ok(())
 }
 
 /// The path of a scenario's file as records keep it.
@@ -141,7 +147,7 @@ impl RecordsFolder {
         if let Some(origin) = &self.origin {
             folder.write(ORIGIN, |file| writeln!(file, "{origin}"))?;
         }
-        keep_camera(scenario, folder)
+        keep_files(scenario, folder)
     }
 }
 

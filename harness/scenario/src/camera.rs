@@ -103,8 +103,8 @@ const MOST_PIXELS: u64 = 400_000_000;
 /// Where a run keeps the scenario's camera file, in the folder of its records: they are read without what they were made from.
 pub const KEPT: &str = "camera-of-the-run";
 
-/// The file that a scenario in `folder` names, or what a run kept of it.
-fn located(folder: &Path, file: &str) -> PathBuf {
+/// The file that a scenario in `folder` names beside itself, or what a run kept of it.
+pub fn located(folder: &Path, file: &str) -> PathBuf {
     let kept = Path::new(file).file_name().map(|name| folder.join(KEPT).join(name));
     kept.filter(|kept| kept.is_file()).unwrap_or_else(|| folder.join(file))
 }

@@ -219,7 +219,7 @@ fn read(
         }
     };
     let (head, subject) = (head?, subject?);
-    let resolved = resolved.with_camera_of(&subject);
+    let resolved = resolved.with_files_of(&subject);
     let kinds = once(&subject.kinds());
     if methods.len() == listed_at.len() {
         check_kinds(&methods, &listed_at, &kinds, in_sweep, problems);

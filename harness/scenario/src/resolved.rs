@@ -29,12 +29,15 @@ impl Resolved {
         Self { points: text_of(root, points), adjusted: text_of(root, adjusted) }
     }
 
-    /// With the camera that was read from a file, if one was.
-    pub(crate) fn with_camera_of(mut self, subject: &Subject) -> Self {
-        if let Subject::Views(views) = subject
-            && views.camera_file.is_some()
-        {
-            _ = writeln!(self.points, "camera {:?}", views.camera);
+    /// With the camera and the corners of a board that were read from files, if they were.
+    pub(crate) fn with_files_of(mut self, subject: &Subject) -> Self {
+        if let Subject::Views(views) = subject {
+            if views.camera_file.is_some() {
+                _ = writeln!(self.points, "camera {:?}", views.camera);
+            }
+            if views.corner_file.is_some() {
+                _ = writeln!(self.points, "board {:?} {:?}", views.field.targets, views.field.plates.first().map(|plate| plate.bend));
+            }
         }
         self
     }

@@ -1,7 +1,7 @@
 //! What a scenario measures.
 
 use std::borrow::Cow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::Problem;
 use calibench_measure::Board;
@@ -129,6 +129,8 @@ pub struct ViewsSubject {
     pub camera: Camera,
     /// The file that it was read from.
     pub camera_file: Option<PathBuf>,
+    /// The file of the board's own corners, if there is one.
+    pub corner_file: Option<PathBuf>,
     /// What the camera distorts beyond its interior orientation.
     pub local: Option<LocalPlan>,
     /// From where, in the order of reports; those of the first trial if they change.
@@ -211,6 +213,11 @@ impl Study {
 }
 
 impl ViewsSubject {
+    /// The files beside the scenario that it was read from: of its camera, of its board.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.camera_file.iter().chain(&self.corner_file).map(PathBuf::as_path)
+    }
+
     /// The sets of figures that its records have, if they have any: of its study, then the counts of recognition.
     pub fn sets(&self) -> Vec<String> {
         let recognition = self.recognition.iter().map(|_| RECOGNITION.to_owned());

@@ -110,7 +110,7 @@ impl<'i> ViewTables<'i> {
         }
         let camera = self.camera.and_then(|section| camera::read(section, folder, problems));
         let pointing = self.pointing.and_then(|section| Pointing::read(section, problems));
-        let plan = self.testfield.and_then(|section| testfield::read(section, of_field, problems));
+        let plan = self.testfield.and_then(|section| testfield::read(section, folder, of_field, problems));
         let (camera, pointing, plan) = (camera?, pointing?, plan?);
         let CameraPlan { camera, file: camera_file, local } = camera;
         let field = plan.generate(of_field).map_err(|error| problems.push(plan.problem(&error))).ok()?;
@@ -149,6 +149,7 @@ impl<'i> ViewTables<'i> {
             unit,
             camera,
             camera_file,
+            corner_file: plan.corner_file.clone(),
             local,
             stations,
             redraw,

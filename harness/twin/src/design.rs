@@ -38,6 +38,8 @@ pub struct Design {
     pub halo: f64,
     /// Dark areas grow by this on every side, as a share of a square.
     pub ink_spread: f64,
+    /// Standard deviation per axis of what the lens does beyond its model, px.
+    pub local: f64,
     /// Variance of printed edges across themselves, as a share of a square, squared.
     pub raggedness: f64,
 }
@@ -54,6 +56,23 @@ const MOST_SHARPENING: f64 = 3.0;
 const MOST_SMOOTHING: f64 = 2.0;
 
 impl Design {
+    /// So many views of usual light and blur, without noise: what says where things are.
+    pub fn plain(views: usize) -> Self {
+        let light = Light { exposure: 0.8, veil: 0.0, gradient: [0.0; 2] };
+        Self {
+            views: vec![ViewDesign { light, blur: [0.5, 0.0, 0.5] }; views],
+            corner: 0.0,
+            tone: Tone::default(),
+            demosaiced: false,
+            noise: NoiseLine::default(),
+            smoothing: 0.0,
+            halo: 0.0,
+            ink_spread: 0.0,
+            local: 0.0,
+            raggedness: 0.0,
+        }
+    }
+
     /// A first one, that of photographs that look so, with a filter's mosaic or without. Views without a look of their own have that of the others.
     pub fn first(look: &Look, demosaiced: bool) -> Option<Self> {
         let tone = Tone::default();
@@ -74,6 +93,7 @@ impl Design {
             smoothing: look.correlation.filter(|_| !demosaiced).map_or(0.0, |figure| blur_of(figure.value)),
             halo: 0.0,
             ink_spread: look.shift.map_or(0.0, |figure| figure.value),
+            local: 0.0,
             raggedness: 0.0,
         })
     }

@@ -1,10 +1,12 @@
 //! The twin that looks like the photographs.
 
+use std::ops::Range;
+
 use crate::design::Design;
 use crate::look::{Figure, Look};
 
-/// How often the twin is changed.
-const ROUNDS: u64 = 7;
+/// How often each kind of twin is changed before the better one is chosen, and how often that one after it.
+const ROUNDS: [u64; 2] = [3, 4];
 
 /// A twin and what it looks like.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,39 +22,47 @@ pub struct Fitted {
 /// # Errors
 /// Those of `look_of`.
 pub fn fitted<E>(real: &Look, mut look_of: impl FnMut(&Design, u64) -> Result<Option<Look>, E>) -> Result<Option<Fitted>, E> {
-    let plain = fitted_from(real, Design::first(real, false), &mut look_of)?;
-    let mosaic = fitted_from(real, Design::first(real, true), &mut look_of)?;
-    Ok(match (plain, mosaic) {
-        (Some(plain), Some(mosaic)) => Some(if mosaic.misfit(real) < plain.misfit(real) { mosaic } else { plain }),
-        (plain, mosaic) => plain.or(mosaic),
-    })
-}
-
-impl Fitted {
-    /// How far the twin's look is from that of photographs, beside their scatter and a tenth of each figure: a number.
-    fn misfit(&self, real: &Look) -> f64 {
-        let apart = |(real, twin): (Option<Figure>, Option<Figure>)| {
-            let (real, twin) = (real?, twin?);
-            let sigma = real.sigma.hypot(twin.sigma).min(1.0).hypot(0.1 * real.value);
-            Some(((real.value - twin.value) / sigma).powi(2))
-        };
-        let [straight, askew] = [0, 1].map(|k| (real.raggedness_by[k], self.look.raggedness_by[k]));
-        [(real.correlation, self.look.correlation), (real.halo, self.look.halo), straight, askew].into_iter().filter_map(apart).sum()
+    let mut kinds = Vec::new();
+    for demosaiced in [false, true] {
+        let Some(first) = Design::first(real, demosaiced) else { return Ok(None) };
+        let Some(steps) = nearer(real, Step { design: first, before: None }, 0..ROUNDS[0], &mut look_of)? else { return Ok(None) };
+        kinds.push(steps);
     }
+    let misfit = |step: &Step| step.before.as_ref().map_or(f64::INFINITY, |(_, look)| misfit(real, look));
+    let Some(best) = kinds.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))) else { return Ok(None) };
+    let last = ROUNDS[0] + ROUNDS[1];
+    let Some(Step { design, .. }) = nearer(real, best, ROUNDS[0]..last, &mut look_of)? else { return Ok(None) };
+    Ok(look_of(&design, last)?.map(|look| Fitted { design, look }))
 }
 
-/// From one first design.
-fn fitted_from<E>(
+/// A design, and the one before it with its look.
+struct Step {
+    design: Design,
+    before: Option<(Design, Look)>,
+}
+
+/// How far the look of a twin is from that of photographs, beside their scatter and a tenth of each figure: a number.
+fn misfit(real: &Look, twin: &Look) -> f64 {
+    let apart = |(real, twin): (Option<Figure>, Option<Figure>)| {
+        let (real, twin) = (real?, twin?);
+        let sigma = real.sigma.hypot(twin.sigma).min(1.0).hypot(0.1 * real.value);
+        Some(((real.value - twin.value) / sigma).powi(2))
+    };
+    let [straight, askew] = [0, 1].map(|k| (real.raggedness_by[k], twin.raggedness_by[k]));
+    [(real.correlation, twin.correlation), (real.halo, twin.halo), straight, askew].into_iter().filter_map(apart).sum()
+}
+
+/// So many steps on; `None` where the twin shows nothing that can be looked at.
+fn nearer<E>(
     real: &Look,
-    first: Option<Design>,
+    mut step: Step,
+    rounds: Range<u64>,
     look_of: &mut impl FnMut(&Design, u64) -> Result<Option<Look>, E>,
-) -> Result<Option<Fitted>, E> {
-    let Some(mut design) = first else { return Ok(None) };
-    let mut before: Option<(Design, Look)> = None;
-    for round in 0..ROUNDS {
-        let Some(look) = look_of(&design, round)? else { return Ok(None) };
-        let next = design.nearer(real, &look, before.as_ref().map(|(design, look)| (design, look)));
-        before = Some((std::mem::replace(&mut design, next), look));
+) -> Result<Option<Step>, E> {
+    for round in rounds {
+        let Some(look) = look_of(&step.design, round)? else { return Ok(None) };
+        let next = step.design.nearer(real, &look, step.before.as_ref().map(|(design, look)| (design, look)));
+        step = Step { before: Some((step.design, look)), design: next };
     }
-    Ok(look_of(&design, ROUNDS)?.map(|look| Fitted { design, look }))
+    Ok(Some(step))
 }

@@ -52,6 +52,7 @@ pub fn made_of(real: &Look, found: &Fitted, square: f64) -> Vec<Part> {
         part("sensor noise", "noise in the middle of the levels", "grey levels of 255", 255.0 * noise, of_noise.map(|ends| ends.map(|end| 255.0 * end))),
         part("sensor.smoothing", "smoothing of the developed image", "px", design.smoothing, of_smoothing),
         part(key, what, "", value, of_halo),
+        part("camera.local.sigma", "what is left of the photographs' hold-out, given to the lens", "px", design.local, None),
         part("testfield.ragged", "raggedness of edges", "object units", ragged, of_ragged),
         part("testfield.ink_spread", "growth of dark areas", "object units", design.ink_spread * square, spread),
     ]

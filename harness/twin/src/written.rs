@@ -9,6 +9,10 @@ use crate::look::{INK, PAPER};
 
 /// Below this share of a square neither ragged edges nor spread ink are written.
 const NOTHING: f64 = 1e-5;
+/// A blur in the corners that is less than this times that in the middle is the same.
+const LEAST_RISE: f64 = 1.05;
+/// How many times wider a tail is than the blur in the corners.
+const TAIL: f64 = 2.5;
 /// Correlation length of ragged edges, px: that of the pieces by which they are measured.
 const RAGGED_LENGTH: f64 = 2.0;
 
@@ -45,7 +49,7 @@ pub struct Scene {
 
 /// The scenario of a twin as TOML: what it pictures, and what it is made of.
 pub fn written(scene: &Scene, design: &Design) -> String {
-    let mut text = head(scene);
+    let mut text = head(scene, design);
     testfield(&mut text, scene, design);
     imaging(&mut text, scene, design);
     let gain = gain(design);
@@ -67,9 +71,16 @@ pub fn written(scene: &Scene, design: &Design) -> String {
     text
 }
 
-fn head(scene: &Scene) -> String {
+fn head(scene: &Scene, design: &Design) -> String {
+    // What changes from square to square: poses do not take it up.
+    let correlation = scene.side.max(10.0 * design.local);
+    let local = if design.local > 0.0 {
+        format!("\n[camera.local]\nsigma = {:.5}\ncorrelation = {correlation:.2}\neach_trial = false\n", design.local)
+    } else {
+        String::new()
+    };
     format!(
-        "why = {:?}\nsource = {:?}\nseed = {}\ntrials = 1\n\n[camera]\nfile = {:?}\n\n[pointing]\ndetector = \"board\"\n\n[[method]]\nname = \"parametric_corner\"\n",
+        "why = {:?}\nsource = {:?}\nseed = {}\ntrials = 1\n\n[camera]\nfile = {:?}\n{local}\n[pointing]\ndetector = \"board\"\n\n[[method]]\nname = \"parametric_corner\"\n",
         scene.why, scene.source, scene.seed, scene.camera
     )
 }
@@ -94,9 +105,12 @@ fn imaging(text: &mut String, scene: &Scene, design: &Design) {
     let blurs = design.views.iter().map(|view| view.smear().blur);
     let middle = calibench_model::median(blurs).unwrap_or(0.5).max(0.12);
     let corner = (middle * middle + design.corner.max(0.0)).sqrt().min(15.0 * middle);
-    _ = writeln!(text, "\n[optics]\nblur = {middle:.4}\ncorner_blur = {corner:.4}");
+    _ = writeln!(text, "\n[optics]\nblur = {middle:.4}");
+    if corner > LEAST_RISE * middle {
+        _ = writeln!(text, "corner_blur = {corner:.4}");
+    }
     if design.halo < -1e-4 {
-        _ = writeln!(text, "tail = {:.4}\ntail_blur = {:.4}", -design.halo, 3.0 * corner);
+        _ = writeln!(text, "tail = {:.4}\ntail_blur = {:.4}", -design.halo, TAIL * corner);
     }
     let gain = gain(design);
     let (dark, slope) = (design.noise.dark / (gain * gain), design.noise.slope / gain);

@@ -14,6 +14,8 @@ use crate::failure::Failure;
 
 /// Camera, board and poses.
 pub struct Modelled {
+    /// The camera model.
+    pub model: ModelChoice,
     /// The camera.
     pub camera: NamedCamera,
     /// All corners of the board, in its order.
@@ -46,7 +48,7 @@ impl Modelled {
             (calibration.named_camera(0), stations, doubts)
         })?;
         doubts.extend(others);
-        Ok(Self { camera: camera.map_err(Failure::Input)?, corners, stations, doubts })
+        Ok(Self { model: model.clone(), camera: camera.map_err(Failure::Input)?, corners, stations, doubts })
     }
 
     /// The board before the camera.

@@ -1,18 +1,22 @@
 //! Images of a twin, and what they look like.
 
+use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 use calibench_cameras::camera_bytes;
 use calibench_cameras::for_file::for_file;
 use calibench_exchange::write_board_corners;
-use calibench_files::NewFolder;
 use calibench_measure::Registry;
 use calibench_model::camera::CameraModel;
 use calibench_project::ProjectError;
+use calibench_random::Key;
+use calibench_run::prepared::Prepared;
 use calibench_run::shots::{Shot, shots};
-use calibench_scenario::{Scenario, parse};
+use calibench_scenario::{Scenario, Subject, parse};
 use calibench_twin::{Design, Geometry, Look, Scene, ViewLook, written};
 use rayon::prelude::*;
+use tempfile::TempDir;
 
 use super::modelled::Modelled;
 use crate::failure::{Failure, project_failure};
@@ -26,40 +30,62 @@ pub const BOARD: &str = "board.csv";
 /// The folder of the images.
 pub const IMAGES: &str = "images";
 
-/// What makes images of a twin.
+/// The files of camera and board that a twin's scenario names.
+pub fn files(modelled: &Modelled) -> Result<[(&'static str, Vec<u8>); 2], Failure> {
+    let made = for_file(Path::new(CAMERA), &modelled.camera, None).map_err(|error| Failure::input(error.to_string()))?;
+    let camera = camera_bytes(made.format, &[made.camera]).map_err(|error| Failure::input(error.to_string()))?;
+    let mut board = Vec::new();
+    write_board_corners(&mut board, &modelled.corners)?;
+    Ok([(CAMERA, camera), (BOARD, board)])
+}
+
+/// What makes images of a twin, in a folder of its own that passes.
 pub struct Studio<'a> {
-    folder: &'a Path,
+    folder: Arc<TempDir>,
     geometry: &'a Geometry,
     scene: Scene,
     registry: &'a Registry,
 }
 
 impl<'a> Studio<'a> {
-    /// With the files of camera and board, written to `folder`.
-    pub fn new(folder: &'a NewFolder, modelled: &Modelled, geometry: &'a Geometry, scene: Scene, registry: &'a Registry) -> Result<Self, Failure> {
-        let made = for_file(Path::new(CAMERA), &modelled.camera, None).map_err(|error| Failure::input(error.to_string()))?;
-        let bytes = camera_bytes(made.format, &[made.camera]).map_err(|error| Failure::input(error.to_string()))?;
-        folder.write::<Failure>(CAMERA, |file| Ok(file.write_all(&bytes)?))?;
-        folder.write::<Failure>(BOARD, |file| Ok(write_board_corners(file, &modelled.corners)?))?;
-        Ok(Self { folder: folder.path(), geometry, scene, registry })
+    /// With the files of camera and board.
+    pub fn new(modelled: &Modelled, geometry: &'a Geometry, scene: Scene, registry: &'a Registry) -> Result<Self, Failure> {
+        let folder = tempfile::tempdir()?;
+        for (name, content) in files(modelled)? {
+            fs::write(folder.path().join(name), content)?;
+        }
+        Ok(Self { folder: folder.into(), geometry, scene, registry })
+    }
+
+    /// That every station pictures the board with this camera, whatever the light is.
+    ///
+    /// # Errors
+    /// In words: a camera that folds within its frame.
+    pub fn pictures_all(&self) -> Result<(), String> {
+        let scenario = self.scenario(&self.text(&Design::plain(self.scene.stations.len()))).map_err(|failure| match failure {
+            Failure::Input(why) | Failure::Picture(why) => why,
+            Failure::Gate | Failure::Doubt => String::new(),
+        })?;
+        let Subject::Views(views) = &scenario.subject else { return Ok(()) };
+        let key = Key { seed: scenario.seed, of: &scenario.drawn, trial: 0, view: "", target: "" };
+        Prepared::new(views, key).map(|_| ()).map_err(|error| error.to_string())
     }
 
     /// The same without what a camera does to its raw pixels: no JPEG.
     pub fn raw(&self) -> Self {
-        let scene = Scene { tables: None, ..self.scene.clone() };
-        Self { scene, ..*self }
+        Self { folder: self.folder.clone(), scene: Scene { tables: None, ..self.scene.clone() }, ..*self }
     }
 
     /// The text of a design's scenario.
     pub fn text(&self, design: &Design) -> String {
-        let text = written(&self.scene, design); // TEMP
-        text.lines().filter(|line| !["corners", "ragged", "ink_spread"].iter().any(|key| line.starts_with(key))).map(|line| format!("{line}\n")).collect()
+        written(&self.scene, design)
     }
 
     /// A scenario whose files are those of the folder.
     pub fn scenario(&self, text: &str) -> Result<Scenario, Failure> {
-        let file = self.folder.join(SCENARIO);
-        parse("twin", &file.display().to_string(), text, self.registry).map_err(|problems| project_failure(ProjectError::Problems(problems)))
+        let file = self.folder.path().join(SCENARIO);
+        let parsed = parse("twin", &file.display().to_string(), text, self.registry);
+        parsed.map_err(|problems| project_failure(ProjectError::Problems(problems)))
     }
 
     /// Whether the images have more than 8 bits.

@@ -22,7 +22,7 @@ pub struct Stamp<'a> {
 /// Digests of files that are kept with the records, or that a judgement reads.
 fn files(plan: &Plan<'_>) -> String {
     let file = match &plan.scenario.subject {
-        Subject::Views(views) => views.camera_file.clone(),
+        Subject::Views(views) => return views.files().map(|file| digest(file).unwrap_or_else(|_| "none".into())).collect(),
         Subject::Photographs(subject) => {
             let published = subject.judgement.as_ref().and_then(|judgement| judgement.published.as_ref());
             published.map(|file| plan.folder_of(subject).join(file))

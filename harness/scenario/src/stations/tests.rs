@@ -127,7 +127,7 @@ fn mistakes_of_a_stand_are_told_with_their_places() {
     let before = |field: &Testfield, text: &str| stations_before(field, text).unwrap_err();
     let (mut two, mut bent) = (field(), field());
     two.plates.push(two.plates[0].clone());
-    bent.plates[0].bend = Some(calibench_model::Bend { peak: 1.0, middle: [0.0, 0.0], across: 0.0, reach: 100.0 });
+    bent.plates[0].bend = Some(calibench_model::Bend { peak: 1.0, middle: [0.0, 0.0], across: 0.0, reach: 100.0, along: 0.0 });
     assert!(
         before(&two, &format!("{stand}bend = 1\nbend_reach = 100")).contains("5:8: a stand bends a testfield of one sheet: this one has 2")
     );

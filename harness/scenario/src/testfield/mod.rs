@@ -1,10 +1,12 @@
 //! The `[testfield]` table: what the cameras of a scenario look at.
 
+use std::path::{Path, PathBuf};
+
 use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
 use calibench_model::boards::{Board, Chessboard as PlainBoard};
 use calibench_random::Key;
-use calibench_synth::testfield::{Chessboard, Coded, FieldError, Fill, House, Wall};
+use calibench_synth::testfield::{Chessboard, Coded, FieldError, Fill, House, Print, Wall};
 use toml::de::DeValue;
 
 use super::section::Section;
@@ -12,6 +14,7 @@ use super::section::Section;
 pub mod boards;
 mod common;
 mod generator;
+pub mod print;
 mod spans;
 mod wall;
 pub mod wire;
@@ -63,6 +66,10 @@ pub struct FieldPlan {
     pub unit: Unit,
     /// What makes it.
     pub generator: Generator,
+    /// How it was printed, where it is a board.
+    pub print: Print,
+    /// The file of its corners, if there is one.
+    pub corner_file: Option<PathBuf>,
     spans: Spans,
 }
 
@@ -72,6 +79,11 @@ impl FieldPlan {
     /// # Errors
     /// What does not fit together. A plan that was read has been tried with the scenario's key.
     pub fn generate(&self, key: Key<'_>) -> Result<Testfield, FieldError> {
+        self.print.applied(self.perfect(key)?, key)
+    }
+
+    /// It as it was meant to be printed.
+    fn perfect(&self, key: Key<'_>) -> Result<Testfield, FieldError> {
         match &self.generator {
             Generator::Chessboard(board) => board.generate(key),
             Generator::Wall(wall, None) => wall.generate(key),
@@ -100,7 +112,8 @@ impl FieldPlan {
             Generator::House(house) => vec![("the texture of the walls", house.specks > 0)],
             Generator::Tags(_) => Vec::new(),
         };
-        words.into_iter().filter_map(|(what, is_drawn)| is_drawn.then_some(what)).collect()
+        let ragged = (self.print.ragged > 0.0).then_some("how ragged printed edges are");
+        words.into_iter().filter_map(|(what, is_drawn)| is_drawn.then_some(what)).chain(ragged).collect()
     }
 
     /// The board that it is, if it is one.
@@ -135,21 +148,33 @@ impl FieldPlan {
     }
 }
 
-/// Reads `[testfield]` and tries it with `key`; mistakes are added to `problems`.
-pub fn read(mut section: Section<'_>, key: Key<'_>, problems: &mut Vec<Problem>) -> Option<FieldPlan> {
+/// Reads `[testfield]` of a scenario in `folder` and tries it with `key`; mistakes are added to `problems`.
+pub fn read(mut section: Section<'_>, folder: &Path, key: Key<'_>, problems: &mut Vec<Problem>) -> Option<FieldPlan> {
     let unit = take_unit(&mut section, problems);
     let kind = take_kind(&mut section, "[testfield]", &KINDS, problems);
     let (unit, kind) = (unit?, kind?);
     let mut spans = Spans::of(&section);
+    let is_board = BOARDS.contains(&kind);
+    let printed = is_board.then(|| section.take_keys(&print::KEYS));
+    let others: Vec<&str> = ["bend", "print_noise"].into_iter().filter(|key| spans.of_key(key).is_some()).collect();
     let generator = match kind {
-        "chessboard" => Generator::Chessboard(chessboard(&section.read(&[], problems)?)),
+        "chessboard" => Generator::Chessboard(chessboard(&section.read(&print::KEYS, problems)?)),
         "coded" => Generator::Coded(coded(&section.read(&[], problems)?, unit)),
         "house" => Generator::House(house(&section.read(&[], problems)?)),
         "wall" => wall::read(section, &mut spans, problems)?,
         "tags" => boards::read_tags(section, &mut spans, problems)?,
         kind => boards::read(section, kind, problems)?,
     };
-    let plan = FieldPlan { unit, generator, spans };
+    let step = match &generator {
+        Generator::Chessboard(board) => board.square,
+        Generator::Board(sheet) => sheet.board.step(),
+        _ => 1.0,
+    };
+    let (print, corner_file) = match printed {
+        Some(section) => print::read(section, (step, &others), folder, problems)?,
+        None => (Print { ragged_length: step, ..Print::default() }, None),
+    };
+    let plan = FieldPlan { unit, generator, print, corner_file, spans };
     match plan.generate(key) {
         Ok(_) => Some(plan),
         Err(error) => {

@@ -91,10 +91,20 @@ impl Strip {
                 }
             }
             Kernel::Smooth { sigma, parts } => match jitter {
-                None => smooth(self, pieces, listed, *sigma, parts, rules),
-                Some(jitter) => jittered(self, pieces, listed, *sigma, parts, rules, jitter),
+                None => by_width(*sigma, parts, |sigma, parts| smooth(self, pieces, listed, sigma, parts, rules)),
+                Some(jitter) => by_width(*sigma, parts, |sigma, parts| jittered(self, pieces, listed, sigma, parts, rules, jitter)),
             },
         }
+    }
+}
+
+/// The parts of the core, whose Gaussian has `sigma` px, and those of a tail: a wider one needs fewer nodes.
+fn by_width(sigma: f64, parts: &[Part], mut each: impl FnMut(f64, &[Part])) {
+    let core = parts.iter().take_while(|part| part.profiles[1].sigma == sigma).count();
+    let (core, tail) = parts.split_at(core);
+    each(sigma, core);
+    if let Some(first) = tail.first() {
+        each(first.profiles[1].sigma, tail);
     }
 }
 

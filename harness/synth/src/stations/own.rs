@@ -1,6 +1,6 @@
 //! What the image of a station has of its own.
 
-use crate::optics::{Motion, Optics};
+use crate::optics::{Motion, Optics, Tail};
 use crate::sensor::{Design, Gradient};
 
 /// What the image of a station has in place of what lens and sensor have in all; where it is `None`, that.
@@ -26,7 +26,9 @@ impl Own {
             Some(own) => all.corner_blur.map(|corner| corner * own / all.blur),
             None => all.corner_blur,
         };
-        Optics { blur, corner_blur, motion: self.motion.or(all.motion), ..*all }
+        // A tail is never narrower than the rest.
+        let tail = all.tail.map(|tail| Tail { blur: tail.blur.max(corner_blur.unwrap_or(blur)), ..tail });
+        Optics { blur, corner_blur, motion: self.motion.or(all.motion), tail, ..*all }
     }
 
     /// The sensor of `all` under the light of this image.

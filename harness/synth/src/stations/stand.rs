@@ -105,6 +105,7 @@ impl StandBend {
             middle: [middle.dot(&plate.u), middle.dot(&plate.v)],
             across: axis.dot(&plate.v).atan2(axis.dot(&plate.u)),
             reach: self.reach,
+            along: 0.0,
         };
         let [[u0, v0], [u1, v1]] = plate.corners;
         let most = HIGHEST * (u1 - u0).min(v1 - v0);

@@ -13,6 +13,7 @@ mod join;
 mod outline;
 pub mod panels;
 pub mod pen;
+mod print;
 pub mod shape;
 mod sheet_layout;
 pub mod tags;
@@ -31,6 +32,7 @@ pub use fill::{Arrangement, Fill, Turn};
 pub use house::House;
 pub use join::Join;
 pub use panels::Panels;
+pub use print::Print;
 pub use shape::Shape;
 pub use tags::{Tag, Tags};
 pub use wall::{Sheet, Wall, WallTarget};
@@ -65,7 +67,7 @@ impl SheetBend {
     pub fn over(&self, [[u0, v0], [u1, v1]]: [PlatePoint; 2]) -> Bend {
         let (sine, cosine) = self.across.sin_cos();
         let reach = 0.5 * ((u1 - u0) * cosine.abs() + (v1 - v0) * sine.abs());
-        Bend { peak: self.peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across: self.across, reach }
+        Bend { peak: self.peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across: self.across, reach, along: 0.0 }
     }
 }
 

@@ -19,6 +19,6 @@ pub(super) fn bent_plate(field: &Testfield, peak: f64) -> Plate {
     let [(u0, u1), (v0, v1)] = [ends(0), ends(1)];
     let across = if u1 - u0 >= v1 - v0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
     let reach = 0.5 * (u1 - u0).max(v1 - v0);
-    let bend = Some(Bend { peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across, reach });
+    let bend = Some(Bend { peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across, reach, along: 0.0 });
     Plate { bend, ..field.plates[0].clone() }
 }

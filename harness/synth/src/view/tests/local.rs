@@ -42,7 +42,7 @@ fn disc_alone(bend: Bend) -> Testfield {
     Testfield { plates: vec![sheet], targets: vec![target], background: 0.2 }
 }
 
-const BEND: Bend = Bend { peak: 0.05, middle: [0.1, 0.0], across: 0.4, reach: 0.5 };
+const BEND: Bend = Bend { peak: 0.05, middle: [0.1, 0.0], across: 0.4, reach: 0.5, along: 0.0 };
 
 fn with_view(test: impl Fn(&View<'_>, &TargetTruth)) {
     let field = disc_alone(BEND);
@@ -146,7 +146,7 @@ fn a_field_of_almost_nothing_changes_almost_nothing() {
 
 #[test]
 fn outlines_follow_the_field_to_a_hundred_thousandth_of_a_pixel() {
-    let field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, Some(Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0 }))]);
+    let field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, Some(Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0, along: 0.0 }))]);
     let (camera, pose) = (camera([-0.9, 0.4, 0.0]), pose(0.9, -0.5, 2.2, 0.4));
     for design in [DESIGN, LocalDesign { sigma: 0.033, correlation: 15.0 }, LocalDesign { sigma: 0.1, correlation: 3.0 }] {
         let local = local(design, SIZE);

@@ -115,7 +115,7 @@ fn a_wall_that_runs_past_the_camera_is_cut() {
 
 #[test]
 fn curves_are_followed_to_a_hundred_thousandth_of_a_pixel() {
-    let bend = Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0 };
+    let bend = Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0, along: 0.0 };
     let field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, Some(bend))]);
     let (camera, pose) = (camera([-0.9, 0.4, 0.0]), pose(0.9, -0.5, 2.2, 0.4));
     let view = View { field: &field, camera: &camera, local: None, pose: &pose };
@@ -180,7 +180,7 @@ fn a_disc_has_its_centre_and_its_ellipse() {
 /// places of the outline.
 #[test]
 fn a_disc_under_distortion_has_the_moments_of_its_picture() {
-    let bend = Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0 };
+    let bend = Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0, along: 0.0 };
     for bend in [None, Some(bend)] {
         let mut field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, bend)]);
         field.targets.push(disc_target(0, 1.0));
@@ -244,7 +244,7 @@ fn views_that_cannot_be_pictured_are_named() {
     let ViewError::Wide { angle, .. } = picture(&wall, &fisheye(480.0), &ahead) else { panic!("95 degrees") };
     assert!((angle - 96.5).abs() < 0.5, "{angle}");
     assert!(View { field: &wall, camera: &fisheye(560.0), local: None, pose: &ahead }.picture(4.0).is_ok());
-    let bend = Bend { peak: 0.05, middle: [0.0, 0.0], across: 0.0, reach: 0.4 };
+    let bend = Bend { peak: 0.05, middle: [0.0, 0.0], across: 0.0, reach: 0.4, along: 0.0 };
     let bent = field(vec![plate("wall", [0.0, 0.0, 0.0], 1.0, None), plate("paper", [0.0, 0.0, 0.5], 0.4, Some(bend))]);
     assert_eq!(picture(&bent, &plain, &ahead), ViewError::BentBefore { front: "paper".into(), back: "wall".into() });
     let mut crossing = field(vec![plate("wall", [0.0, 0.0, 0.0], 1.0, None), plate("across", [0.0, 0.0, 0.0], 0.5, None)]);
