@@ -67,6 +67,7 @@ mod store;
 mod sweeps;
 mod task;
 mod task_photographs;
+mod twin;
 mod videos;
 mod vosselman;
 mod zhu;

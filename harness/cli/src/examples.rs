@@ -31,6 +31,13 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench records atlas/corners --at blur=0.5 --csv", "some cells of a sweep as CSV"),
         ],
     ),
+    (
+        "twin",
+        &[
+            ("calibench twin photos --board 9x6:25 -o twin", "a scenario that looks like the photographs, and what operators do to them"),
+            ("calibench twin photos --board 9x6:25 --what-if light=2 --what-if optics.blur=0.5 -o twin", "and what would change"),
+        ],
+    ),
     ("render", &[("calibench render corners/noise --trials 20 -o pictures", "twenty images, with the truth beside them")]),
     (
         "print",

@@ -265,9 +265,13 @@ pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResul
         let folder = here.root().map_err(project)?.join("scenarios").join(&named.name);
         let beside = |path: PathBuf| {
             let own = folder.parent().and_then(|folder| path.strip_prefix(folder).ok()).map(Path::to_owned);
-            own.map(|own| (own, path.clone()))
-                .ok_or_else(|| input(format!("{}: the file is not in the scenario's folder", path.display())))
+            own.map(|own| (own, path.clone())).ok_or_else(|| input(format!("{}: the file is not in the scenario's folder", path.display())))
         };
-        Ok((named.name.clone(), named.text.clone(), files.into_iter().map(beside).collect::<PyResult<_>>()?, here.revision().map_err(project)?))
+        Ok((
+            named.name.clone(),
+            named.text.clone(),
+            files.into_iter().map(beside).collect::<PyResult<_>>()?,
+            here.revision().map_err(project)?,
+        ))
     })
 }

@@ -34,7 +34,7 @@ impl Drawn {
                 ASIDE.iter().for_each(|key| drop(table.remove(*key)));
             }
         }
-        if let Some(DeValue::Array(stations)) = root.get_mut("station").map(|stations| stations.get_mut()) {
+        if let Some(DeValue::Array(stations)) = root.get_mut("station").map(toml::Spanned::get_mut) {
             for station in stations.iter_mut() {
                 if let DeValue::Table(station) = station.get_mut() {
                     OF_STATIONS.iter().for_each(|key| drop(station.remove(*key)));

@@ -25,13 +25,13 @@ pub fn fitted<E>(real: &Look, mut look_of: impl FnMut(&Design, u64) -> Result<Op
     let mut kinds = Vec::new();
     for demosaiced in [false, true] {
         let Some(first) = Design::first(real, demosaiced) else { return Ok(None) };
-        let Some(steps) = nearer(real, Step { design: first, before: None }, 0..ROUNDS[0], &mut look_of)? else { return Ok(None) };
+        let Some(steps) = nearer(real, (Step { design: first, before: None }, true), 0..ROUNDS[0], &mut look_of)? else { return Ok(None) };
         kinds.push(steps);
     }
     let misfit = |step: &Step| step.before.as_ref().map_or(f64::INFINITY, |(_, look)| misfit(real, look));
     let Some(best) = kinds.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))) else { return Ok(None) };
     let last = ROUNDS[0] + ROUNDS[1];
-    let Some(Step { design, .. }) = nearer(real, best, ROUNDS[0]..last, &mut look_of)? else { return Ok(None) };
+    let Some(Step { design, .. }) = nearer(real, (best, false), ROUNDS[0]..last, &mut look_of)? else { return Ok(None) };
     Ok(look_of(&design, last)?.map(|look| Fitted { design, look }))
 }
 
@@ -52,16 +52,19 @@ fn misfit(real: &Look, twin: &Look) -> f64 {
     [(real.correlation, twin.correlation), (real.halo, twin.halo), straight, askew].into_iter().filter_map(apart).sum()
 }
 
-/// So many steps on; `None` where the twin shows nothing that can be looked at.
+/// So many steps on, with printed edges that stay `straight` or not: which chain makes edges ragged is told before the print may; `None` where the twin shows nothing that can be looked at.
 fn nearer<E>(
     real: &Look,
-    mut step: Step,
+    (mut step, straight): (Step, bool),
     rounds: Range<u64>,
     look_of: &mut impl FnMut(&Design, u64) -> Result<Option<Look>, E>,
 ) -> Result<Option<Step>, E> {
     for round in rounds {
         let Some(look) = look_of(&step.design, round)? else { return Ok(None) };
-        let next = step.design.nearer(real, &look, step.before.as_ref().map(|(design, look)| (design, look)));
+        let mut next = step.design.nearer(real, &look, step.before.as_ref().map(|(design, look)| (design, look)));
+        if straight {
+            next.raggedness = 0.0;
+        }
         step = Step { before: Some((step.design, look)), design: next };
     }
     Ok(Some(step))

@@ -26,7 +26,9 @@ const NORMAL: f64 = 1.96;
 pub fn made_of(real: &Look, found: &Fitted, square: f64) -> Vec<Part> {
     let (design, twin) = (&found.design, &found.look);
     // What is found errs as the photographs do and as the twin does by which it was found.
-    let both = |real: Option<Figure>, twin: Option<Figure>| real.zip(twin).map(|(real, twin)| real.sigma.hypot(twin.sigma)).filter(|s| s.is_finite());
+    let both = |real: Option<Figure>, twin: Option<Figure>| {
+        real.zip(twin).map(|(real, twin)| real.sigma.hypot(twin.sigma)).filter(|s| s.is_finite())
+    };
     let root = |variance: f64, sigma: Option<f64>, scale: f64| {
         let ends = sigma.map(|sigma| [variance - NORMAL * sigma, variance + NORMAL * sigma].map(|v| v.max(0.0).sqrt() * scale));
         (variance.max(0.0).sqrt() * scale, ends)
@@ -49,7 +51,13 @@ pub fn made_of(real: &Look, found: &Fitted, square: f64) -> Vec<Part> {
     };
     vec![
         part("station.blur", "blur, mean over views", "px", blur, of_blur),
-        part("sensor noise", "noise in the middle of the levels", "grey levels of 255", 255.0 * noise, of_noise.map(|ends| ends.map(|end| 255.0 * end))),
+        part(
+            "sensor noise",
+            "noise in the middle of the levels",
+            "grey levels of 255",
+            255.0 * noise,
+            of_noise.map(|ends| ends.map(|end| 255.0 * end)),
+        ),
         part("sensor.smoothing", "smoothing of the developed image", "px", design.smoothing, of_smoothing),
         part(key, what, "", value, of_halo),
         part("camera.local.sigma", "what is left of the photographs' hold-out, given to the lens", "px", design.local, None),

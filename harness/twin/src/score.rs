@@ -101,7 +101,8 @@ mod tests {
     #[test]
     fn intervals_hold_the_value_and_widen_with_the_scatter_of_views() {
         let (calm, wild) = (of(&[0.10, 0.11, 0.09, 0.10]).estimate().unwrap(), of(&[0.02, 0.17, 0.05, 0.10]).estimate().unwrap());
-        let width = |estimate: RmsEstimate| estimate.interval.map(|[from, to]| (to / from, from < estimate.px && estimate.px < to)).unwrap();
+        let width =
+            |estimate: RmsEstimate| estimate.interval.map(|[from, to]| (to / from, from < estimate.px && estimate.px < to)).unwrap();
         assert!(width(calm).1 && width(wild).1 && width(wild).0 > 3.0 * width(calm).0, "{calm:?} {wild:?}");
         assert!(of(&[0.1, 0.2]).estimate().unwrap().interval.is_none() && Rms::default().estimate().is_none());
         assert!((of(&[0.3, 0.4]).px().unwrap() - 0.125_f64.sqrt()).abs() < 1e-12);

@@ -10,7 +10,7 @@ use calibench_synth::testfield::{Chessboard, Levels};
 use calibench_synth::view::View;
 use nalgebra::{Point3, Vector3};
 
-use crate::look::{across, INK, Light, Look, PAPER, ViewLook, noise_line};
+use crate::look::{INK, Light, Look, PAPER, ViewLook, across, noise_line};
 use crate::{Design, Geometry, Tone, fitted};
 
 const KEY: Key<'_> = Key { seed: 5, of: "twin", trial: 0, view: "", target: "" };
@@ -34,7 +34,8 @@ fn camera() -> Camera {
 
 fn poses() -> Vec<Pose> {
     let middle = Point3::new(100.0, -62.5, 0.0);
-    let from = |dx: f64, dy: f64, dz: f64, roll: f64| Pose::looking_at(middle + Vector3::new(dx, dy, dz), middle, Vector3::y(), roll).unwrap();
+    let from =
+        |dx: f64, dy: f64, dz: f64, roll: f64| Pose::looking_at(middle + Vector3::new(dx, dy, dz), middle, Vector3::y(), roll).unwrap();
     vec![from(0.0, 0.0, 380.0, 0.1), from(120.0, -60.0, 330.0, 0.4), from(-150.0, 40.0, 350.0, -0.2), from(30.0, 160.0, 340.0, 0.9)]
 }
 

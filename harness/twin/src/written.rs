@@ -66,7 +66,12 @@ pub fn written(scene: &Scene, design: &Design) -> String {
             _ = writeln!(text, "motion = [{dx:.4}, {dy:.4}]");
         }
         let [gx, gy] = light.gradient;
-        _ = writeln!(text, "exposure = {:.5}\nveil = {:.5}\ngradient_across = [{gx:.5}, {gy:.5}]", light.exposure / gain, light.veil / gain);
+        _ = writeln!(
+            text,
+            "exposure = {:.5}\nveil = {:.5}\ngradient_across = [{gx:.5}, {gy:.5}]",
+            light.exposure / gain,
+            light.veil / gain
+        );
     }
     text
 }
@@ -136,7 +141,8 @@ fn imaging(text: &mut String, scene: &Scene, design: &Design) {
         _ = writeln!(text, "sharpening = {:.4}", design.halo);
     }
     if let Some(tables) = &scene.tables {
-        let rows: Vec<String> = tables.chunks(8).map(|row| format!("    {},", row.iter().map(u8::to_string).collect::<Vec<_>>().join(", "))).collect();
+        let rows: Vec<String> =
+            tables.chunks(8).map(|row| format!("    {},", row.iter().map(u8::to_string).collect::<Vec<_>>().join(", "))).collect();
         _ = writeln!(text, "jpeg_tables = [\n{}\n]", rows.join("\n"));
     }
 }

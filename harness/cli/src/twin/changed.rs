@@ -34,7 +34,8 @@ const EXPECTED: &str = "expected light=4, blur=0.5, raw, or a key of the scenari
 
 /// Reads `--what-if`.
 pub fn change(text: &str) -> Result<Change, String> {
-    let factor = |value: &str| value.parse::<f64>().ok().filter(|factor| (0.01..=100.0).contains(factor)).ok_or("expected a factor of 0.01 to 100");
+    let factor =
+        |value: &str| value.parse::<f64>().ok().filter(|factor| (0.01..=100.0).contains(factor)).ok_or("expected a factor of 0.01 to 100");
     let kind = match text.split_once('=') {
         None if text == "raw" => Kind::Raw,
         None => return Err(EXPECTED.to_owned()),
@@ -97,7 +98,9 @@ impl Change {
             _ => return Err(wrong(&format!("the twin has no [{table}]; it has {}", root.keys().cloned().collect::<Vec<_>>().join(", ")))),
         }
         // Stations have a blur and a motion of their own, which would hide the one that is asked for.
-        if table == "optics" && let Some(Value::Array(stations)) = root.get_mut("station") {
+        if table == "optics"
+            && let Some(Value::Array(stations)) = root.get_mut("station")
+        {
             stations.iter_mut().filter_map(Value::as_table_mut).for_each(|station| drop(station.remove(key)));
         }
         toml::to_string(&root).map_err(|error| wrong(&error.to_string()))

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use calibench_calibrate::choice::{HALF, ModelChoice};
 use calibench_cameras::inputs_of;
 use calibench_files::NewFolder;
-use calibench_images::{encode_png, head_of};
 use calibench_images::photo::quantisation;
+use calibench_images::{encode_png, head_of};
 use calibench_judge::{Field, JudgementError, Material, field_of, usual_methods};
 use calibench_measure::Configured;
-use calibench_model::{BoardCorner, Image, TargetKind};
 use calibench_model::boards::{Board, Chessboard};
 use calibench_model::camera::ImageSize;
+use calibench_model::{BoardCorner, Image, TargetKind};
 use calibench_photographs::names::names;
 use calibench_photographs::{Asked, MeasuredBoards, Reader, measured_boards, method_info};
 use calibench_records::results::Trial;
@@ -39,10 +39,10 @@ mod rendered;
 mod scores;
 mod told;
 
+use calibench_twin::score::Rms;
 use changed::{Change, USUAL, change};
 use modelled::Modelled;
 use rendered::{BOARD, CAMERA, IMAGES, SCENARIO, Studio, files};
-use calibench_twin::score::Rms;
 use scores::{Truth, held_out, true_errors};
 use told::{Scored, told};
 
@@ -105,10 +105,10 @@ impl Twin {
         let mut real = self.measured(context, Some("photographs"), &reader, &methods)?;
         let mut answered = None;
         output.replace(|folder| {
-            let modelled = self.modelled(context, &models, (&real.material, &board), &reader)?;
+            let modelled = by_models(context, &models, (&real.material, &board), &reader)?;
             let geometry = modelled.geometry(&board);
             real.material.field = self.field(&modelled.corners)?;
-            let scene = self.scene(&modelled, &board, &reader, &geometry)?;
+            let scene = scene_of(&modelled, &board, &reader, &geometry)?;
             let studio = Studio::new(&modelled, &geometry, scene, context.registry()?)?;
             for (name, content) in files(&modelled)? {
                 folder.write::<Failure>(name, |file| Ok(file.write_all(&content)?))?;
@@ -135,32 +135,9 @@ impl Twin {
     /// The camera models that are tried in turn.
     fn models(&self) -> Result<Vec<ModelChoice>, Failure> {
         let texts: Vec<&str> = self.model.as_deref().map_or_else(|| MODELS.to_vec(), |model| vec![model]);
-        let parsed = texts.into_iter().map(|text| ModelChoice::parse(text).map_err(|error| Failure::input(format!("--model {text}: {error}"))));
+        let parsed =
+            texts.into_iter().map(|text| ModelChoice::parse(text).map_err(|error| Failure::input(format!("--model {text}: {error}"))));
         parsed.collect()
-    }
-
-    /// Camera, board and poses by the first model whose camera pictures all of its frame.
-    fn modelled(
-        &self,
-        context: &Context<'_>,
-        models: &[ModelChoice],
-        (material, board): (&Material, &Chessboard),
-        reader: &Reader,
-    ) -> Result<Modelled, Failure> {
-        let mut refused = None;
-        for model in models {
-            let modelled = Modelled::of(material, model)?;
-            let geometry = modelled.geometry(board);
-            let scene = self.scene(&modelled, board, reader, &geometry)?;
-            match Studio::new(&modelled, &geometry, scene, context.registry()?)?.pictures_all() {
-                Ok(()) => return Ok(modelled),
-                Err(why) => {
-                    say!("{}: {why}", model.label);
-                    refused = Some(Failure::input(format!("no twin by the model {}: {why}; expected another --model", model.label)));
-                }
-            }
-        }
-        Err(refused.unwrap_or_else(no_edge))
     }
 
     /// What is judged by: corners that were measured.
@@ -236,13 +213,19 @@ impl Twin {
 
     /// What is asked for, or what usually is.
     fn changes(&self) -> Result<Vec<Change>, Failure> {
-        if self.changes.is_empty() { USUAL.iter().map(|text| change(text).map_err(Failure::input)).collect() } else { Ok(self.changes.clone()) }
+        if self.changes.is_empty() {
+            USUAL.iter().map(|text| change(text).map_err(Failure::input)).collect()
+        } else {
+            Ok(self.changes.clone())
+        }
     }
 
     fn chessboard(&self) -> Result<Chessboard, Failure> {
         match self.board {
             Board::Chessboard(board) => Ok(board),
-            _ => Err(Failure::input("--board: a twin is made of photographs of a chessboard, as in 9x6:25; of other boards `judge` says which operator to trust")),
+            _ => Err(Failure::input(
+                "--board: a twin is made of photographs of a chessboard, as in 9x6:25; of other boards `judge` says which operator to trust",
+            )),
         }
     }
 
@@ -258,7 +241,8 @@ impl Twin {
     fn measured(&self, context: &Context<'_>, what: Option<&str>, reader: &Reader, methods: &[Configured]) -> Result<Measured, Failure> {
         let finder = finder(self.board)?;
         let progress = Progress::start(what.unwrap_or("twin"), reader.photos().len() as u64, context.quiet || what.is_none());
-        let MeasuredBoards { trial, size, doubts } = measured_boards(reader, &finder, methods, &|| progress.step()).map_err(of_one_camera)?;
+        let MeasuredBoards { trial, size, doubts } =
+            measured_boards(reader, &finder, methods, &|| progress.step()).map_err(of_one_camera)?;
         let seen = reader.photos().len() - trial.missed_views.len();
         if what.is_some() {
             progress.finish(&format!("the board was found in {seen} of {}", reader.photos().len()));
@@ -269,26 +253,6 @@ impl Twin {
         let infos: Vec<_> = methods.iter().map(method_info).collect();
         let field = field_of(&self.board).map_err(|error| Failure::input(error.to_string()))?;
         Ok(Measured { material: Material::new(&trial, &infos, field, size), trial, doubts })
-    }
-
-    fn scene(&self, modelled: &Modelled, board: &Chessboard, reader: &Reader, geometry: &Geometry) -> Result<Scene, Failure> {
-        let sides = modelled.stations.iter().map(|(_, pose)| geometry.side(pose)).filter(|side| side.is_finite());
-        let tables = quantisation(&reader.photos()[0]).map_err(|error| Failure::input(format!("{}: {error}", reader.photos()[0].display())))?;
-        Ok(Scene {
-            why: "The twin of photographs: what each operator does to them.".into(),
-            source: format!("{} photographs", modelled.stations.len()),
-            camera: CAMERA.into(),
-            board: BOARD.into(),
-            rows: board.rows,
-            columns: board.columns,
-            square: board.square,
-            inverted: false,
-            stations: modelled.stations.clone(),
-            tables,
-            bits: if head_of(&reader.photos()[0])?.is_deep { 16 } else { 8 },
-            side: calibench_model::median(sides).ok_or_else(no_edge)?,
-            seed: 1,
-        })
     }
 
     /// What operators measure in images of a scenario, which `save` writes, and the truth.
@@ -343,6 +307,50 @@ fn write_page(folder: &NewFolder, answer: &TwinAnswer) -> Result<(), Failure> {
     Ok(folder.write::<std::io::Error>("README.md", |file| file.write_all(text.as_bytes()))?)
 }
 
+/// Camera, board and poses by the first model whose camera pictures all of its frame.
+fn by_models(
+    context: &Context<'_>,
+    models: &[ModelChoice],
+    (material, board): (&Material, &Chessboard),
+    reader: &Reader,
+) -> Result<Modelled, Failure> {
+    let mut refused = None;
+    for model in models {
+        let modelled = Modelled::of(material, model)?;
+        let geometry = modelled.geometry(board);
+        let scene = scene_of(&modelled, board, reader, &geometry)?;
+        match Studio::new(&modelled, &geometry, scene, context.registry()?)?.pictures_all() {
+            Ok(()) => return Ok(modelled),
+            Err(why) => {
+                say!("{}: {why}", model.label);
+                refused = Some(Failure::input(format!("no twin by the model {}: {why}; expected another --model", model.label)));
+            }
+        }
+    }
+    Err(refused.unwrap_or_else(no_edge))
+}
+
+/// What a twin pictures.
+fn scene_of(modelled: &Modelled, board: &Chessboard, reader: &Reader, geometry: &Geometry) -> Result<Scene, Failure> {
+    let sides = modelled.stations.iter().map(|(_, pose)| geometry.side(pose)).filter(|side| side.is_finite());
+    let tables = quantisation(&reader.photos()[0]).map_err(|error| Failure::input(format!("{}: {error}", reader.photos()[0].display())))?;
+    Ok(Scene {
+        why: "The twin of photographs: what each operator does to them.".into(),
+        source: format!("{} photographs", modelled.stations.len()),
+        camera: CAMERA.into(),
+        board: BOARD.into(),
+        rows: board.rows,
+        columns: board.columns,
+        square: board.square,
+        inverted: false,
+        stations: modelled.stations.clone(),
+        tables,
+        bits: if head_of(&reader.photos()[0])?.is_deep { 16 } else { 8 },
+        side: calibench_model::median(sides).ok_or_else(no_edge)?,
+        seed: 1,
+    })
+}
+
 fn no_edge() -> Failure {
     Failure::input("no edge of the board can be looked at: its squares are smaller than 8 px, or its photographs too few")
 }
@@ -352,7 +360,8 @@ fn looks(reader: &Reader, modelled: &Modelled, geometry: &Geometry) -> Result<Ve
     let names = names(reader.photos());
     let one = |(station, pose): &(String, calibench_model::Pose)| {
         let place = names.iter().position(|name| name == station);
-        let path = place.map(|place| &reader.photos()[place]).ok_or_else(|| Failure::input(format!("no photograph is called {station}")))?;
+        let path =
+            place.map(|place| &reader.photos()[place]).ok_or_else(|| Failure::input(format!("no photograph is called {station}")))?;
         Ok(ViewLook::of(&reader.read(path)?, geometry, pose))
     };
     modelled.stations.par_iter().map(one).collect()

@@ -24,7 +24,7 @@ use crate::failure::{Failure, project_failure};
 /// The scenario's file.
 pub const SCENARIO: &str = "twin.toml";
 /// The camera's file.
-pub const CAMERA: &str = "camera.toml";
+pub const CAMERA: &str = "camera.json";
 /// The board's file.
 pub const BOARD: &str = "board.csv";
 /// The folder of the images.

@@ -15,8 +15,7 @@ use crate::failure::Failure;
 /// Hold-out of each operator, in the order of the material: predictions of photographs that the camera has not seen.
 pub fn held_out(material: &Material, model: &ModelChoice) -> Result<Vec<Rms>, Failure> {
     let models = vec![model.clone()];
-    let options =
-        Options { models, pitch_um: None, splits: 0, seed: 0, name: "twin".into(), published: None, published_sigma: None };
+    let options = Options { models, pitch_um: None, splits: 0, seed: 0, name: "twin".into(), published: None, published_sigma: None };
     let rows = judge(material, &options)?;
     let view = |row: &Row| {
         let count = row.count?;

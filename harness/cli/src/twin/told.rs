@@ -107,8 +107,11 @@ fn noise(look: &Look) -> Vec<[f64; 2]> {
     look.bins.iter().map(|[level, variance, _]| [255.0 * level, 255.0 * variance.max(0.0).sqrt()]).collect()
 }
 
-/// The figures of both looks.
-fn figures(look: &Look) -> Vec<(&'static str, &'static str, Option<Figure>)> {
+/// What a figure is, its unit, and the figure.
+type Named = (&'static str, &'static str, Option<Figure>);
+
+/// The figures of a look.
+fn figures(look: &Look) -> Vec<Named> {
     let root = |figure: Option<Figure>, scale: f64| {
         figure.map(|figure| {
             let value = figure.value.max(0.0).sqrt();
@@ -132,7 +135,7 @@ fn figures(look: &Look) -> Vec<(&'static str, &'static str, Option<Figure>)> {
 
 fn looks(real: &Look, twin: &Look) -> Vec<TwinLook> {
     let both = figures(real).into_iter().zip(figures(twin));
-    let one = |((what, unit, real), (.., twin)): ((&'static str, &'static str, Option<Figure>), (_, _, Option<Figure>))| {
+    let one = |((what, unit, real), (.., twin)): (Named, Named)| {
         let (real, twin) = (real?, twin?);
         Some(TwinLook { what, unit, photographs: real.value, sigma: Some(real.sigma).filter(|sigma| sigma.is_finite()), twin: twin.value })
     };
@@ -163,7 +166,10 @@ fn in_doubt(real: &Look, twin: &Look, views: usize) -> Vec<String> {
         ));
     }
     if real.clipped > CLIPPED {
-        doubts.push(format!("{:.0} % of the pixels in squares are at the ends of the scale: their noise and their levels are not told", 100.0 * real.clipped));
+        doubts.push(format!(
+            "{:.0} % of the pixels in squares are at the ends of the scale: their noise and their levels are not told",
+            100.0 * real.clipped
+        ));
     }
     for ((what, unit, own), (.., twin)) in figures(real).into_iter().zip(figures(twin)) {
         // Polarity has a limit of its own, and no twin has it.

@@ -6,8 +6,8 @@ use std::path::Path;
 
 /// The places of coefficients of a block of 8 x 8 in the order of the file, row by row (ITU-T T.81, figure 5).
 const ZIGZAG: [usize; 64] = [
-    0, 1, 8, 16, 9, 2, 3, 10, 17, 24, 32, 25, 18, 11, 4, 5, 12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6, 7, 14, 21, 28, 35, 42, 49, 56, 57, 50,
-    43, 36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63,
+    0, 1, 8, 16, 9, 2, 3, 10, 17, 24, 32, 25, 18, 11, 4, 5, 12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6, 7, 14, 21, 28, 35, 42, 49, 56,
+    57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63,
 ];
 
 /// The luminance quantisation table of a JPEG file, row by row, as its pixels are stored; `None` of a file that is no JPEG or has no table of 8 bits before its first scan.
@@ -37,7 +37,9 @@ fn first_table(file: &mut impl Read) -> io::Result<Option<[u8; 64]>> {
         file.read_exact(&mut two)?;
         let mut segment = vec![0; usize::from(u16::from_be_bytes(two)).saturating_sub(2)];
         file.read_exact(&mut segment)?;
-        if marker == 0xdb && let Some(table) = luminance(&segment) {
+        if marker == 0xdb
+            && let Some(table) = luminance(&segment)
+        {
             return Ok(Some(table));
         }
     }

@@ -36,7 +36,6 @@ pub struct TwinAnswer {
 
 /// An operator on photographs and their twin. Root mean squares are of distances (2D).
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[expect(clippy::struct_field_names, reason = "keys that name their unit")]
 pub struct TwinOperator {
     /// Its name with its parameters.
     pub method: String,
@@ -110,7 +109,6 @@ pub struct TwinCase {
 
 /// Errors of an operator in a twin that was changed, 2D.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[expect(clippy::struct_field_names, reason = "keys that name their unit")]
 pub struct TwinCaseOperator {
     /// RMS, px; null where it measured nothing.
     pub true_px: Option<f64>,

@@ -29,7 +29,9 @@ pub fn page(twin: &TwinAnswer, scenario: &str) -> String {
         what_if(twin),
         looks(twin),
         made_of(twin),
-        format_args!("It is the scenario `{scenario}`: `calibench render {scenario} -o images` makes more of its images, `calibench run` runs it with any methods."),
+        format_args!(
+            "It is the scenario `{scenario}`: `calibench render {scenario} -o images` makes more of its images, `calibench run` runs it with any methods."
+        ),
     )
 }
 
@@ -65,11 +67,23 @@ fn px(value: Option<f64>) -> String {
 }
 
 fn operators(twin: &TwinAnswer) -> String {
-    let mut table = MarkdownTable::new(&["operator", "hold-out, px", "of the twin", "twin / photographs", "true error in the twin, px", "95 %", ""]);
+    let mut table =
+        MarkdownTable::new(&["operator", "hold-out, px", "of the twin", "twin / photographs", "true error in the twin, px", "95 %", ""]);
     for operator in &twin.operators {
         let ratio = operator.held_out_px.zip(operator.twin_held_out_px).map_or_else(String::new, |(own, twin)| fixed(twin / own, 2));
-        let range = operator.true_from_px.zip(operator.true_to_px).map_or_else(String::new, |(from, to)| format!("{} to {}", fixed(from, 3), fixed(to, 3)));
-        table.row([code(&operator.method), px(operator.held_out_px), px(operator.twin_held_out_px), ratio, px(operator.true_px), range, remark(twin, operator)]);
+        let range = operator
+            .true_from_px
+            .zip(operator.true_to_px)
+            .map_or_else(String::new, |(from, to)| format!("{} to {}", fixed(from, 3), fixed(to, 3)));
+        table.row([
+            code(&operator.method),
+            px(operator.held_out_px),
+            px(operator.twin_held_out_px),
+            ratio,
+            px(operator.true_px),
+            range,
+            remark(twin, operator),
+        ]);
     }
     table.render()
 }
@@ -85,11 +99,18 @@ fn what_if(twin: &TwinAnswer) -> String {
     let heads: Vec<&str> = ["operator", "as it is"].into_iter().chain(twin.what_if.iter().map(|case| case.what.as_str())).collect();
     let mut table = MarkdownTable::new(&heads);
     for (place, operator) in twin.operators.iter().enumerate() {
-        let of = |case: &TwinCase| case.operators.get(place).map_or_else(String::new, |own| format!("{}{}", px(own.true_px), interval(own.true_from_px, own.true_to_px)));
+        let of = |case: &TwinCase| {
+            case.operators
+                .get(place)
+                .map_or_else(String::new, |own| format!("{}{}", px(own.true_px), interval(own.true_from_px, own.true_to_px)))
+        };
         let own = format!("{}{}", px(operator.true_px), interval(operator.true_from_px, operator.true_to_px));
         table.row([code(&operator.method), own].into_iter().chain(twin.what_if.iter().map(of)));
     }
-    format!("True errors in the twin with one thing changed, px RMS (2D), with intervals of 95 %; `--what-if KEY=VALUE` asks for others.\n\n{}", table.render())
+    format!(
+        "True errors in the twin with one thing changed, px RMS (2D), with intervals of 95 %; `--what-if KEY=VALUE` asks for others.\n\n{}",
+        table.render()
+    )
 }
 
 fn looks(twin: &TwinAnswer) -> String {

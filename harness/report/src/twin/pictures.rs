@@ -10,10 +10,19 @@ const COLOURS: [usize; 2] = [1, 0];
 
 /// Names of files, what they show, and the pictures.
 pub fn pictures(twin: &TwinAnswer) -> Vec<(&'static str, &'static str, Canvas)> {
-    let mut all = vec![("operators.png", "Hold-out of each operator in the photographs and in their twin: on the line both are the same.", operators(twin))];
+    let mut all = vec![(
+        "operators.png",
+        "Hold-out of each operator in the photographs and in their twin: on the line both are the same.",
+        operators(twin),
+    )];
     let curves = [
         ("profile.png", "The mean profile of edges across, 0 dark and 1 bright.", &twin.profile, ["across the edge, px", "level"]),
-        ("noise.png", "Noise of the insides of squares against their level.", &twin.noise, ["grey level", "standard deviation, grey levels"]),
+        (
+            "noise.png",
+            "Noise of the insides of squares against their level.",
+            &twin.noise,
+            ["grey level", "standard deviation, grey levels"],
+        ),
     ];
     for (name, said, curves, axes) in curves {
         all.extend(drawn(name, said, curves, axes).map(|picture| (name, said, picture)));
@@ -23,11 +32,14 @@ pub fn pictures(twin: &TwinAnswer) -> Vec<(&'static str, &'static str, Canvas)> 
 
 fn operators(twin: &TwinAnswer) -> Canvas {
     let pairs = || twin.operators.iter().filter_map(|one| Some((one, one.held_out_px?, one.twin_held_out_px?)));
-    let high = 1.1 * pairs().map(|(_, own, twin)| own.max(twin)).fold(1e-3, f64::max);
-    let axis = |title: &str| Axis::linear(title, [0.0, high]);
-    let mut plot = Plot::new("operators", "Hold-out of operators", axis("hold-out in the photographs, px"), axis("hold-out in the twin, px"), 420.0);
+    let ends =
+        pairs().fold((f64::INFINITY, 1e-3), |(low, high): (f64, f64), (_, own, twin)| (own.min(twin).min(low), own.max(twin).max(high)));
+    let (low, high) = (0.8 * ends.0.min(ends.1), 1.25 * ends.1);
+    let axis = |title: &str| Axis { log: true, ..Axis::linear(title, [low, high]) };
+    let mut plot =
+        Plot::new("operators", "Hold-out of operators", axis("hold-out in the photographs, px"), axis("hold-out in the twin, px"), 420.0);
     plot.series(5, None, &[""]);
-    plot.line(&[(0.0, 0.0), (high, high)], &Said::default());
+    plot.line(&[(low, low), (high, high)], &Said::default());
     for (place, (one, own, twin)) in pairs().enumerate() {
         let shape = Shape::ALL[place % Shape::ALL.len()];
         plot.series(place, None, &["operator", "photographs", "twin"]);

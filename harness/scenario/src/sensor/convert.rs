@@ -6,7 +6,8 @@ use std::ops::Range;
 use calibench_diagnostics::Problem;
 use calibench_model::PixelPoint;
 use calibench_synth::sensor::{
-    ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Processing, Pattern, Per, Sensor, SensorError, Vignetting,
+    ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Pattern, Per, Processing, Sensor, SensorError,
+    Vignetting,
 };
 
 use super::numbers::{self, Numbers};

@@ -1,7 +1,7 @@
 //! Tables to sensors, and mistakes at their keys.
 
 use calibench_model::PixelPoint;
-use calibench_synth::sensor::{Design, FallOff, Gamma, Noise, Per, Sensor};
+use calibench_synth::sensor::{Design, FallOff, Gamma, Noise, Per, Processing, Sensor};
 use schemars::schema_for;
 use toml::de::DeTable;
 
@@ -106,6 +106,16 @@ fn cos4_takes_the_cameras_principal_distance_and_its_own_centre() {
 }
 
 #[test]
+fn what_a_camera_does_to_its_pictures_is_read() {
+    let processed = design("smoothing = 0.6\nsharpening = 0.8\nsharpening_radius = 1.5\nshoulder = { start = 0.8, gain = 4 }");
+    assert_eq!(processed.processing, Some(Processing { smoothing: 0.6, sharpening: 0.8, radius: 1.5 }));
+    assert_eq!(processed.gamma, Some(Gamma::Shoulder { start: 0.8, gain: 4.0 }));
+    let steps: Vec<String> = (1..=64).map(|step: u8| step.to_string()).collect();
+    assert_eq!(design(&format!("jpeg_tables = [{}]", steps.join(", "))).tables.unwrap()[63], 64);
+    assert_eq!(design("exposure = 1").processing, None);
+}
+
+#[test]
 fn each_mistake_stands_at_its_key() {
     for (text, at, message) in [
         ("grey_noise = 0.1\nfull_well = 1000", "full_well", "`full_well` beside `grey_noise`: expected one description of the noise"),
@@ -132,6 +142,8 @@ fn each_mistake_stands_at_its_key() {
         ("filter = 'rggb'\nwhite_balance = [1, 1, 1]", "white_balance", "without `demosaic`"),
         ("gamma = 2.2\nsrgb = true", "srgb", "`srgb` beside `gamma`"),
         ("jpeg_quality = 90\nbits = 16", "bits", "JPEG has 8 bits"),
+        ("gamma = 2.2\nshoulder = { start = 0.8, gain = 4 }", "shoulder", "`shoulder` beside `gamma`"),
+        ("sharpening_radius = 2", "sharpening_radius", "without `sharpening`"),
     ] {
         let (_, problems) = read_in(text, &AROUND);
         let [problem] = &problems[..] else { panic!("{text}: {problems:?}") };
@@ -152,6 +164,10 @@ fn numbers_out_of_bounds_and_of_the_wrong_form_are_named() {
         ("bits = 14", "14", "expected 8, 12 or 16 bits, found 14"),
         ("jpeg_quality = 0", "0", "expected a whole number from 1 to 100"),
         ("filter = 'rgb'", "'rgb'", "rggb"),
+        ("smoothing = 6", "6", "from 0 to 5"),
+        ("sharpening = -1", "-1", "from -0.9 to 5"),
+        ("shoulder = { start = 1, gain = 4 }", "1", "from 0 to 0.99"),
+        ("jpeg_tables = [1, 2, 3]", "[1, 2, 3]", "expected 64 numbers in a list, found 3"),
         ("snr = 30", "snr", "unknown key `snr` in [sensor]"),
     ] {
         let (_, problems) = read_in(text, &AROUND);

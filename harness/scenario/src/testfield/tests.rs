@@ -13,7 +13,7 @@ pub fn plan(text: &str) -> Result<FieldPlan, String> {
     let mut root = Section { name: "the scenario", span: 0..1, table: root.into_inner() };
     let mut problems = Vec::new();
     let section = root.take_table("testfield", "[testfield]", &mut problems).unwrap();
-    let plan = read(section, KEY, &mut problems);
+    let plan = read(section, Path::new(env!("CARGO_MANIFEST_DIR")), KEY, &mut problems);
     assert_eq!(plan.is_some(), problems.is_empty(), "no plan without a problem, no problem with a plan");
     plan.ok_or_else(|| Problems { file: "f".into(), text: text.into(), problems }.to_string())
 }
@@ -225,4 +225,33 @@ fn any_board_is_read_in_a_word() {
     refused(&word("charuco:8x5:30:40:DICT_4X4_50"), "`marker` is 40");
     refused(&word("dots:8x5:30"), "3:9: `dots` is no kind of board");
     refused("[testfield]\nkind = \"board\"", "board");
+}
+
+#[test]
+fn a_board_is_printed_as_its_file_and_its_keys_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("board.csv");
+    let row = |row: i32, column: i32| {
+        let (x, y) = (20.0 * f64::from(column - 1) + 0.03 * f64::from(row), -20.0 * f64::from(row - 1));
+        format!("r{row}c{column},{x},{y},0,0.01,0.01,0.01\n")
+    };
+    let rows: String = (1..=5).flat_map(|r| (1..=7).map(move |c| row(r, c))).collect();
+    std::fs::write(&file, format!("target,X,Y,Z,sX,sY,sZ\n{rows}")).unwrap();
+    let board = |more: &str| format!("[testfield]\nkind = \"board\"\nboard = \"chessboard:7x5:20\"\n{more}");
+    let corners = format!("corners = {:?}\n", file.display().to_string());
+    let read = plan(&board(&corners)).unwrap();
+    let field = read.generate(KEY).unwrap();
+    let place = field.targets.iter().find(|target| target.id == "r4c2").unwrap();
+    assert!((field.position(place).x - 20.12).abs() < 1e-9 && place.surveyed.x == 20.0);
+    assert_eq!(read.corner_file.as_deref(), Some(file.as_path()));
+    let spread = plan(&board("ink_spread = 0.2\nragged = 0.05")).unwrap();
+    assert_eq!((spread.print.ink_spread, spread.print.ragged, spread.print.ragged_length), (0.2, 0.05, 2.0));
+    assert!(spread.drawn().contains(&"how ragged printed edges are"));
+    refused(&board(&format!("{corners}bend = 1")), "`corners` beside `bend`");
+    refused(&board("corners = \"nowhere.csv\""), "nowhere.csv");
+    refused(&board("ragged_length = 2"), "says nothing without `ragged`");
+    refused(&board("ink_spread = 5"), "ink_spread");
+    refused(&board("inkspread = 5"), "did you mean `ink_spread`");
+    refused(&format!("[testfield]\nkind = \"chessboard\"\nrows = 5\ncolumns = 6\nsquare = 20\n{corners}"), "corners");
+    refused("[testfield]\nkind = \"house\"\nwidth = 16\nink_spread = 1", "unknown key `ink_spread`");
 }

@@ -65,7 +65,9 @@ mod tests {
             assert!(grey < 1.0 && (curve.decode(grey) - light).abs() < 1e-9, "{light} {grey}");
         }
         let slope = |at: f64| (curve.encode(at + 1e-6) - curve.encode(at - 1e-6)) / 2e-6;
-        assert!((slope(0.1) - 4.0).abs() < 1e-6 && (slope(0.175) - 4.0).abs() < 1e-4 && (slope(0.25) / 4.0 - (-1.0_f64).exp()).abs() < 1e-4);
+        assert!(
+            (slope(0.1) - 4.0).abs() < 1e-6 && (slope(0.175) - 4.0).abs() < 1e-4 && (slope(0.25) / 4.0 - (-1.0_f64).exp()).abs() < 1e-4
+        );
         for bad in [Gamma::Shoulder { start: 1.0, gain: 4.0 }, Gamma::Shoulder { start: 0.5, gain: 0.5 }] {
             assert!(bad.check().is_err());
         }

@@ -91,12 +91,15 @@ mod tests {
     #[test]
     fn it_is_what_a_codec_does_with_the_same_table() {
         const STANDARD: [u8; 64] = [
-            16, 11, 10, 16, 24, 40, 51, 61, 12, 12, 14, 19, 26, 58, 60, 55, 14, 13, 16, 24, 40, 57, 69, 56, 14, 17, 22, 29, 51, 87, 80, 62, 18, 22, 37, 56,
-            68, 109, 103, 77, 24, 35, 55, 64, 81, 104, 113, 92, 49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99,
+            16, 11, 10, 16, 24, 40, 51, 61, 12, 12, 14, 19, 26, 58, 60, 55, 14, 13, 16, 24, 40, 57, 69, 56, 14, 17, 22, 29, 51, 87, 80, 62,
+            18, 22, 37, 56, 68, 109, 103, 77, 24, 35, 55, 64, 81, 104, 113, 92, 49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112,
+            100, 103, 99,
         ];
         let before = image(64, 48);
         let (ours, theirs) = (through_tables(before.clone(), &STANDARD).to_u8(), through_jpeg(before.clone(), 50).unwrap().to_u8());
-        let apart = |a: &[u8], b: &[u8]| (a.iter().zip(b).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum::<f64>() / a.len() as f64).sqrt();
+        let apart = |a: &[u8], b: &[u8]| {
+            (a.iter().zip(b).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
+        };
         let (codec, loss) = (apart(&ours, &theirs), apart(&ours, &before.to_u8()));
         assert!(loss > 4.0 && codec < 0.25 * loss, "{codec} {loss}");
     }

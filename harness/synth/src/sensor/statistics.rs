@@ -34,7 +34,12 @@ impl Sensor {
     /// [`Sensor::variance`] with the camera's patterns or without them, from image to image.
     pub(super) fn scatter(&self, grey: f64, patterns: bool) -> Option<f64> {
         let design = &self.design;
-        if design.demosaic.is_some() || design.gamma.is_some() || design.jpeg.is_some() || design.tables.is_some() || self.processing().is_some() {
+        if design.demosaic.is_some()
+            || design.gamma.is_some()
+            || design.jpeg.is_some()
+            || design.tables.is_some()
+            || self.processing().is_some()
+        {
             return None;
         }
         let noise = match &design.noise {

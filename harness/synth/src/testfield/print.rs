@@ -69,7 +69,11 @@ impl Print {
             let Some(place) = at.get(target.id.as_str()) else { continue };
             let own = in_sheet(&sheet, place);
             if (own[0] - target.at[0]).hypot(own[1] - target.at[1]) > 0.25 * target.size {
-                return Err(wrong(format!("`{}` within a quarter of its size from where it is meant to be: it is {} off", target.id, (own[0] - target.at[0]).hypot(own[1] - target.at[1]))));
+                return Err(wrong(format!(
+                    "`{}` within a quarter of its size from where it is meant to be: it is {} off",
+                    target.id,
+                    (own[0] - target.at[0]).hypot(own[1] - target.at[1])
+                )));
             }
             moved.push((target.at, [own[0] - target.at[0], own[1] - target.at[1]]));
         }
@@ -84,7 +88,8 @@ impl Print {
             Curve::Line { from, to } => Curve::Line { from: place(from), to: place(to) },
             Curve::Arc { centre, radius, start, sweep } => Curve::Arc { centre: place(centre), radius, start, sweep },
         };
-        let areas = plate.areas.iter().map(|area| Area { outline: Outline(area.outline.0.iter().map(curve).collect()), ..area.clone() }).collect();
+        let areas =
+            plate.areas.iter().map(|area| Area { outline: Outline(area.outline.0.iter().map(curve).collect()), ..area.clone() }).collect();
         field.plates = vec![Plate { areas, ..sheet }];
         Ok(field)
     }
@@ -100,7 +105,9 @@ impl Print {
                 let mut rng = stream(Key { target: &name, ..key }, Purpose::PrintNoise);
                 let outwards = turn(&area.outline) * if area.level < area.ground { 1.0 } else { -1.0 };
                 let sides = area.outline.0.iter().flat_map(|curve| match *curve {
-                    Curve::Line { from, to } => self.side(from, to, outwards, &mut || Distribution::<f64>::sample(&StandardNormal, &mut rng)),
+                    Curve::Line { from, to } => {
+                        self.side(from, to, outwards, &mut || Distribution::<f64>::sample(&StandardNormal, &mut rng))
+                    }
                     arc @ Curve::Arc { .. } => vec![arc],
                 });
                 area.outline = Outline(sides.collect());
@@ -167,7 +174,7 @@ fn surface(plate: &Plate, at: &BTreeMap<&str, Point3<f64>>) -> Plate {
     let heights = DVector::from_iterator(places.len(), places.iter().map(|place| place[2]));
     let found = design.svd(true, true).solve(&heights, 1e-9).unwrap_or_else(|_| DVector::zeros(6));
     let quadratic = Matrix2::new(found[3], 0.5 * found[4], 0.5 * found[4], found[5]).symmetric_eigen();
-    let first = if quadratic.eigenvalues[0].abs() >= quadratic.eigenvalues[1].abs() { 0 } else { 1 };
+    let first = usize::from(quadratic.eigenvalues[0].abs() < quadratic.eigenvalues[1].abs());
     let (most, least) = (quadratic.eigenvalues[first], quadratic.eigenvalues[1 - first]);
     let direction = quadratic.eigenvectors.column(first);
     let bend = (most != 0.0).then(|| Bend {

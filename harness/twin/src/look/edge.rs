@@ -197,7 +197,8 @@ fn raggedness(pixels: &[Near], step: &Vector4<f64>) -> Option<f64> {
     let n = offsets.len() as f64;
     let place = |index: usize| index as f64 - 0.5 * (n - 1.0);
     let mean = offsets.iter().sum::<f64>() / n;
-    let trend = offsets.iter().enumerate().map(|(i, offset)| place(i) * offset).sum::<f64>() / (0..offsets.len()).map(|i| place(i).powi(2)).sum::<f64>();
+    let trend = offsets.iter().enumerate().map(|(i, offset)| place(i) * offset).sum::<f64>()
+        / (0..offsets.len()).map(|i| place(i).powi(2)).sum::<f64>();
     let square = |(i, offset): (usize, &f64)| (offset - mean - trend * place(i)).powi(2);
     Some(offsets.iter().enumerate().map(square).sum::<f64>() / (n - 2.0))
 }

@@ -146,7 +146,8 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn correlation(view: &ViewLook) -> f64 {
-    let both = view.squares.iter().filter(|square| square.clipped < 0.01).map(|square| 0.5 * (square.correlation[0] + square.correlation[1]));
+    let both =
+        view.squares.iter().filter(|square| square.clipped < 0.01).map(|square| 0.5 * (square.correlation[0] + square.correlation[1]));
     median(both).unwrap_or(f64::NAN)
 }
 

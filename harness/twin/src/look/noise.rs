@@ -28,7 +28,9 @@ impl NoiseLine {
 pub fn binned<'s>(squares: impl Iterator<Item = &'s SquareFit>) -> Vec<[f64; 3]> {
     let good: Vec<&SquareFit> = squares.filter(|square| square.clipped < 0.01).collect();
     let bounds = good.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], square| [l.min(square.level), h.max(square.level)]);
-    let bin = |square: &&&SquareFit| (((square.level - bounds[0]) / (bounds[1] - bounds[0]).max(1e-9)) * BINS as f64).min(BINS as f64 - 1.0) as usize;
+    let bin = |square: &&&SquareFit| {
+        (((square.level - bounds[0]) / (bounds[1] - bounds[0]).max(1e-9)) * BINS as f64).min(BINS as f64 - 1.0) as usize
+    };
     let of = |index: usize| {
         let own: Vec<&SquareFit> = good.iter().filter(|square| bin(square) == index).copied().collect();
         Some([median(own.iter().map(|square| square.level))?, median(own.iter().map(|square| square.variance))?, own.len() as f64])

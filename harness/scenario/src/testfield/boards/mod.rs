@@ -22,19 +22,8 @@ pub const SHEETS: [&str; 8] = ["board", "charuco", "aprilgrid", "gridboard", "ci
 /// The keys that all of them have.
 const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
 /// These with those of the print, which were taken before.
-const TAKEN: [&str; 11] = [
-    "margin",
-    "bend",
-    "bend_across",
-    "print_noise",
-    "paper",
-    "ink",
-    "background",
-    "corners",
-    "ink_spread",
-    "ragged",
-    "ragged_length",
-];
+const TAKEN: [&str; 11] =
+    ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background", "corners", "ink_spread", "ragged", "ragged_length"];
 
 /// Reads a board of one of [`SHEETS`]; mistakes are added to `problems`.
 pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -> Option<Generator> {

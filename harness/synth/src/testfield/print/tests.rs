@@ -75,7 +75,8 @@ fn ragged_edges_scatter_as_they_are_asked_to_and_are_the_same_under_one_seed() {
     // Nodes aside of the square's sides, which are whole multiples of 20 in x or y.
     let aside = |value: f64| (value / 20.0 - (value / 20.0).round()) * 20.0;
     let nodes = made.plates[0].areas.iter().flat_map(|area| area.outline.0.iter().map(|curve| curve.at(0.0)));
-    let offsets: Vec<f64> = nodes.map(|at| [aside(at[0]), aside(at[1])]).map(|[x, y]| if x.abs() < y.abs() { x } else { y }).filter(|d| *d != 0.0).collect();
+    let offsets: Vec<f64> =
+        nodes.map(|at| [aside(at[0]), aside(at[1])]).map(|[x, y]| if x.abs() < y.abs() { x } else { y }).filter(|d| *d != 0.0).collect();
     let rms = (offsets.iter().map(|d| d * d).sum::<f64>() / offsets.len() as f64).sqrt();
     assert!(offsets.len() > 800 && (rms / 0.1 - 1.0).abs() < 0.06, "{} {rms}", offsets.len());
 }

@@ -146,7 +146,8 @@ fn a_field_of_almost_nothing_changes_almost_nothing() {
 
 #[test]
 fn outlines_follow_the_field_to_a_hundred_thousandth_of_a_pixel() {
-    let field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, Some(Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0, along: 0.0 }))]);
+    let field =
+        field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, Some(Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0, along: 0.0 }))]);
     let (camera, pose) = (camera([-0.9, 0.4, 0.0]), pose(0.9, -0.5, 2.2, 0.4));
     for design in [DESIGN, LocalDesign { sigma: 0.033, correlation: 15.0 }, LocalDesign { sigma: 0.1, correlation: 3.0 }] {
         let local = local(design, SIZE);
