@@ -144,7 +144,7 @@ enum Command {
     Calibrate(Box<calibrate::Calibrate>),
     /// Say which operator and which camera model to trust on your photographs, and how far
     Judge(Box<judge::Judge>),
-    /// Make a scenario that looks like your photographs, and say what each operator does to them
+    /// Make a scenario like your photographs, and say what operators do to it
     Twin(Box<twin::Twin>),
     /// Find where images were taken, from control points; the camera is known
     Resect(resect::Resect),
