@@ -110,15 +110,15 @@ pub struct StationWire {
     pub up: Option<Tuple<3>>,
     /// With `towards`: the roll (kappa) that follows, degrees; positive turns the picture clockwise. Default 0.
     pub roll: Option<Degrees>,
-    /// Standard deviation of the Gaussian blur of its image, px: in place of `blur` of [optics]; `corner_blur` keeps its ratio to it.
+    /// Standard deviation of the Gaussian blur of its image, px: in place of `blur` of `[optics]`; `corner_blur` keeps its ratio to it.
     pub blur: Option<Pixels>,
-    /// A straight motion during its exposure [dx, dy], px: in place of `motion` of [optics].
+    /// A straight motion during its exposure [dx, dy], px: in place of `motion` of `[optics]`.
     pub motion: Option<Position>,
-    /// Factor of the light in its image, beside `exposure` of [sensor]. Default 1.
+    /// Factor of the light in its image, beside `exposure` of `[sensor]`. Default 1.
     pub exposure: Option<Exposure>,
     /// Stray light in its image, alike everywhere, added after exposure and before noise, fraction of full scale; negative for a black level that a camera takes away. -0.5 to 1. Default 0.
     pub veil: Option<Veil>,
-    /// Illumination gradient [x, y] of its image: change of the light across the whole frame, in place of that of [sensor]; it leaves `veil` alone.
+    /// Illumination gradient [x, y] of its image: change of the light across the whole frame, in place of that of `[sensor]`; it leaves `veil` alone.
     pub gradient_across: Option<Numbers<Gradient, 2>>,
 }
 
