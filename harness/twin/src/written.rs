@@ -33,8 +33,6 @@ pub struct Scene {
     pub columns: usize,
     /// The side of a square, object units.
     pub square: f64,
-    /// Whether the square at the upper left is lighter than its neighbours.
-    pub inverted: bool,
     /// The names of the views, and their poses.
     pub stations: Vec<(String, Pose)>,
     /// The luminance quantisation table of the photographs' JPEG, row by row.
@@ -91,10 +89,9 @@ fn head(scene: &Scene, design: &Design) -> String {
 }
 
 fn testfield(text: &mut String, scene: &Scene, design: &Design) {
-    let (paper, ink) = if scene.inverted { (INK, PAPER) } else { (PAPER, INK) };
     _ = write!(
         text,
-        "\n[testfield]\nkind = \"board\"\nunit = \"mm\"\nboard = \"chessboard:{}x{}:{}\"\ncorners = {:?}\nmargin = {}\npaper = {paper}\nink = {ink}\nbackground = 0.4\n",
+        "\n[testfield]\nkind = \"board\"\nunit = \"mm\"\nboard = \"chessboard:{}x{}:{}\"\ncorners = {:?}\nmargin = {}\npaper = {PAPER}\nink = {INK}\nbackground = 0.4\n",
         scene.columns, scene.rows, scene.square, scene.board, scene.square
     );
     if design.ink_spread.abs() > NOTHING {

@@ -20,6 +20,7 @@ use calibench_photographs::{Asked, MeasuredBoards, Reader, measured_boards, meth
 use calibench_records::results::Trial;
 use calibench_report::json::TwinAnswer;
 use calibench_report::twin::{page, pictures, verdict};
+use calibench_twin::score::Rms;
 use calibench_twin::{Fitted, Geometry, Scene, ViewLook, fitted};
 use clap::Args;
 use rayon::prelude::*;
@@ -39,7 +40,6 @@ mod rendered;
 mod scores;
 mod told;
 
-use calibench_twin::score::Rms;
 use changed::{Change, USUAL, change};
 use modelled::Modelled;
 use rendered::{BOARD, CAMERA, IMAGES, SCENARIO, Studio, files};
@@ -115,8 +115,9 @@ impl Twin {
             }
             let look = studio.look_of(&looks(&reader, &modelled, &geometry)?).ok_or_else(no_edge)?;
             let found = fitted(&look, |design, trial| studio.look(design, trial))?.ok_or_else(no_edge)?;
-            let found = self.with_the_rest(context, &studio, (found, &modelled), &real, &methods)?;
-            let scored = self.scored(context, folder, &studio, (&found, &modelled), &real, &methods)?;
+            let real_held_out = held_out(&real.material, &modelled.model)?;
+            let found = self.with_the_rest(context, &studio, (found, &modelled), &real_held_out, &methods)?;
+            let scored = self.scored(context, folder, &studio, (&found, &modelled), real_held_out, &methods)?;
             let doubts = real.doubts.iter().chain(&modelled.doubts).cloned().collect();
             let answer = told(&scored, (&look, &found), (&modelled.model.label, board.square), doubts);
             write_page(folder, &answer)?;
@@ -152,20 +153,19 @@ impl Twin {
         context: &Context<'_>,
         studio: &Studio<'_>,
         (mut found, modelled): (Fitted, &Modelled),
-        real: &Measured,
+        real_held_out: &[Rms],
         methods: &[Configured],
     ) -> Result<Fitted, Failure> {
-        let maker = context.methods_of_boards(&[MAKER.to_owned()], TargetKind::ChessCorner)?;
         let place = methods.iter().position(|method| method.label == MAKER);
-        let own = |material: &Material, place: usize| held_out(material, &modelled.model).map(|all| all.get(place).and_then(Rms::px));
-        let Some(wanted) = place.map(|place| own(&real.material, place)).transpose()?.flatten() else { return Ok(found) };
+        let Some(wanted) = place.and_then(|place| real_held_out[place].px()) else { return Ok(found) };
+        let maker = context.methods_of_boards(&[MAKER.to_owned()], TargetKind::ChessCorner)?;
         for _ in 0..REST {
             let passing = tempfile::tempdir()?;
             let save = |name: &str, image: &Image<'_>| saved(passing.path(), name, image, studio.is_deep());
             let quiet = Shown { what: "twin", save: &save, is_said: false };
             let (mut twin, truth) = self.pictured(context, &quiet, studio, &studio.text(&found.design), &maker)?;
             twin.material.field = self.field(&truth.corners)?;
-            let Some(has) = own(&twin.material, 0)? else { break };
+            let Some(has) = held_out(&twin.material, &modelled.model)?[0].px() else { break };
             // Both axes have a part of it, and poses take up some.
             let variance = found.design.local.powi(2) + 0.5 * (wanted * wanted - has * has);
             found.design.local = variance.max(0.0).sqrt();
@@ -180,7 +180,7 @@ impl Twin {
         folder: &NewFolder,
         studio: &Studio<'_>,
         (found, modelled): (&Fitted, &Modelled),
-        real: &Measured,
+        real_held_out: Vec<Rms>,
         methods: &'m [Configured],
     ) -> Result<Scored<'m>, Failure> {
         let model = &modelled.model;
@@ -195,7 +195,7 @@ impl Twin {
         twin.material.field = self.field(&truth.corners)?;
         let mut scored = Scored {
             methods,
-            held_out: held_out(&real.material, model)?,
+            held_out: real_held_out,
             twin_held_out: held_out(&twin.material, model)?,
             errors: true_errors(&twin.trial, methods.len(), &truth),
             cases: Vec::new(),
@@ -342,7 +342,6 @@ fn scene_of(modelled: &Modelled, board: &Chessboard, reader: &Reader, geometry: 
         rows: board.rows,
         columns: board.columns,
         square: board.square,
-        inverted: false,
         stations: modelled.stations.clone(),
         tables,
         bits: if head_of(&reader.photos()[0])?.is_deep { 16 } else { 8 },

@@ -78,17 +78,16 @@ pub fn told(scored: &Scored<'_>, (real, found): (&Look, &Fitted), (model, square
 
 fn operator(scored: &Scored<'_>, place: usize) -> TwinOperator {
     let method = &scored.methods[place];
-    let estimate = scored.errors[place].estimate();
-    let interval = estimate.and_then(|estimate| estimate.interval);
+    let TwinCaseOperator { true_px, true_from_px, true_to_px } = of_case(&scored.errors[place]);
     TwinOperator {
         method: method.label.clone(),
         is_maker: method.label == MAKER,
         unavailable: method.operator.as_ref().err().cloned(),
         held_out_px: scored.held_out[place].px(),
         twin_held_out_px: scored.twin_held_out[place].px(),
-        true_px: estimate.map(|estimate| estimate.px),
-        true_from_px: interval.map(|ends| ends[0]),
-        true_to_px: interval.map(|ends| ends[1]),
+        true_px,
+        true_from_px,
+        true_to_px,
     }
 }
 

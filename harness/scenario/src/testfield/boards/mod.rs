@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::common::{BACKGROUND, bend, levels};
 use super::generator::Generator;
+use super::print;
 use super::spans::Spans;
 use crate::section::Section;
 
@@ -21,22 +22,20 @@ use wire::{
 pub const SHEETS: [&str; 8] = ["board", "charuco", "aprilgrid", "gridboard", "circles", "rings", "puzzle", "dotted"];
 /// The keys that all of them have.
 const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
-/// These with those of the print, which were taken before.
-const TAKEN: [&str; 11] =
-    ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background", "corners", "ink_spread", "ragged", "ragged_length"];
-
 /// Reads a board of one of [`SHEETS`]; mistakes are added to `problems`.
 pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -> Option<Generator> {
     let sheet: Option<SheetWire> = section.take_keys(&COMMON).read(&[], problems);
+    // For proposals: the print's keys were taken before.
+    let taken = [&COMMON[..], &print::KEYS].concat();
     let (board, usual_margin) = match kind {
-        "board" => in_a_word(&section.read(&TAKEN, problems)?, problems)?,
-        "charuco" => charuco(&section.read(&TAKEN, problems)?, problems)?,
-        "aprilgrid" => aprilgrid(&section.read(&TAKEN, problems)?, problems)?,
-        "gridboard" => gridboard(&section.read(&TAKEN, problems)?, problems)?,
-        "circles" => circles(&section.read(&TAKEN, problems)?, problems)?,
-        "puzzle" => puzzle(&section.read(&TAKEN, problems)?),
-        "dotted" => dotted(&section.read(&TAKEN, problems)?),
-        _ => rings(&section.read(&TAKEN, problems)?),
+        "board" => in_a_word(&section.read(&taken, problems)?, problems)?,
+        "charuco" => charuco(&section.read(&taken, problems)?, problems)?,
+        "aprilgrid" => aprilgrid(&section.read(&taken, problems)?, problems)?,
+        "gridboard" => gridboard(&section.read(&taken, problems)?, problems)?,
+        "circles" => circles(&section.read(&taken, problems)?, problems)?,
+        "puzzle" => puzzle(&section.read(&taken, problems)?),
+        "dotted" => dotted(&section.read(&taken, problems)?),
+        _ => rings(&section.read(&taken, problems)?),
     };
     let sheet = sheet?;
     Some(Generator::Board(BoardSheet {
