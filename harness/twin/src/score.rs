@@ -118,4 +118,16 @@ mod tests {
         assert!(first.p_of_tie(&worse).unwrap() < 1e-4);
         assert_eq!(first.p_of_tie(&first), Some(1.0));
     }
+
+    #[test]
+    fn of_more_operators_each_comparison_asks_for_more() {
+        let first = of(&[0.10, 0.12, 0.09, 0.11, 0.10, 0.13]);
+        let worse = |by: f64| of(&[0.10 + by, 0.125 + by, 0.086, 0.112 + by, 0.104, 0.13 + by]);
+        let doubtful =
+            (1..400).map(|k| worse(1e-4 * f64::from(k))).find(|other| other.p_of_tie(&first).is_some_and(|p| p < 0.045)).unwrap();
+        assert!(doubtful.p_of_tie(&first).unwrap() > 0.03);
+        assert_eq!(best(&[first.clone(), doubtful.clone()]), [0], "at 5 % of one comparison");
+        let far = of(&[0.5, 0.6, 0.5, 0.55, 0.52, 0.61]);
+        assert_eq!(best(&[first, doubtful, far]), [0, 1], "at 2.5 % of two");
+    }
 }

@@ -5,13 +5,13 @@ use calibench_model::{Image, Pose};
 use calibench_random::Key;
 use calibench_synth::optics::{Motion, Optics};
 use calibench_synth::raster::Renderer;
-use calibench_synth::sensor::{Design as SensorDesign, Gradient, Noise, Per, Sensor};
+use calibench_synth::sensor::{Design as SensorDesign, Gradient, Noise, Per, Processing, Sensor};
 use calibench_synth::testfield::{Chessboard, Levels};
 use calibench_synth::view::View;
 use nalgebra::{Point3, Vector3};
 
 use crate::look::{INK, Light, Look, PAPER, ViewLook, across, noise_line};
-use crate::{Design, Geometry, Tone, fitted};
+use crate::{Design, Geometry, Scene, Tone, fitted, written};
 
 const KEY: Key<'_> = Key { seed: 5, of: "twin", trial: 0, view: "", target: "" };
 const SIZE: [f64; 2] = [640.0, 480.0];
@@ -140,4 +140,75 @@ fn the_twin_of_a_simulation_is_made_like_it() {
     }
     assert!((design.noise.at(0.4).sqrt() / sigma - 1.0).abs() < 0.05, "{:?}", design.noise);
     assert!(design.smoothing < 0.3 && design.halo.abs() < 0.1, "{design:?}");
+}
+
+#[test]
+fn smoothed_noise_has_the_correlation_of_its_gaussian_in_both_directions() {
+    let smoothing = 0.8;
+    let processing = Some(Processing { smoothing, sharpening: 0.0, radius: 1.0 });
+    let looks = looks(&Optics { blur: 0.7, ..Optics::default() }, &SensorDesign { processing, ..white(0.02) });
+    let expected = (-0.25 / (smoothing * smoothing)).exp();
+    for direction in 0..2 {
+        let all: Vec<f64> = looks.iter().flat_map(|view| &view.squares).map(|square| square.correlation[direction]).collect();
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        assert!((mean - expected).abs() < 0.03, "{direction}: {mean} {expected}");
+    }
+}
+
+#[test]
+fn edges_overshoot_where_they_were_sharpened_and_tail_off_where_light_is_spread() {
+    let halo = |optics: Optics, sharpening: f64| {
+        let processing = Some(Processing { smoothing: 0.0, sharpening, radius: 1.0 });
+        look(&optics, &SensorDesign { processing, ..white(0.002) }).halo.unwrap().value
+    };
+    let plain = Optics { blur: 0.8, ..Optics::default() };
+    let tail = Some(calibench_synth::optics::Tail { share: 0.2, blur: 2.5 });
+    let [sharp, usual, tailed] = [halo(plain, 1.0), halo(plain, 0.0), halo(Optics { tail, ..plain }, 0.0)];
+    assert!(sharp > usual + 0.02 && tailed < usual - 0.005, "{sharp} {usual} {tailed}");
+}
+
+/// What the next design has more is what photographs have more than the twin.
+#[test]
+fn light_and_ink_follow_what_photographs_have_more() {
+    let optics = Optics { blur: 0.8, ..Optics::default() };
+    let real = look(&optics, &SensorDesign { veil: 0.06, exposure: 0.7, ..white(0.003) });
+    let twin = look(&optics, &white(0.003));
+    let before = Design::first(&twin, false).unwrap();
+    let next = before.nearer(&real, &twin, None);
+    for (old, new) in before.views.iter().zip(&next.views) {
+        assert!((new.light.veil - old.light.veil - 0.06).abs() < 0.005, "{:?} {:?}", old.light, new.light);
+        assert!((new.light.exposure / old.light.exposure - 0.7 / 0.8).abs() < 0.01, "{:?} {:?}", old.light, new.light);
+    }
+}
+
+#[test]
+fn a_shoulder_has_four_times_the_light_below_it_and_noise_as_without_it() {
+    let scene = Scene {
+        why: "w".into(),
+        source: "s".into(),
+        camera: "c".into(),
+        board: "b".into(),
+        rows: 6,
+        columns: 9,
+        square: 25.0,
+        stations: vec![("a".into(), poses()[0])],
+        tables: None,
+        bits: 8,
+        side: 40.0,
+        seed: 1,
+    };
+    let noise = crate::look::NoiseLine { dark: 1e-6, slope: 4e-4 };
+    let plain = Design { noise, ..Design::plain(1) };
+    let bent = Design { tone: Tone { shoulder: 0.25 }, ..plain.clone() };
+    let number = |text: &str, key: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(&format!("{key} = "))).unwrap_or_else(|| panic!("{key}: {text}"));
+        line.parse::<f64>().unwrap()
+    };
+    let [plain, bent] = [plain, bent].map(|design| written(&scene, &design));
+    assert!((number(&plain, "exposure") / number(&bent, "exposure") - 4.0).abs() < 1e-3);
+    // Variance over level: electrons at white; the white of the sensor is four times as bright.
+    assert!((number(&plain, "full_well") - 2500.0).abs() < 0.1 && (number(&bent, "full_well") - 10_000.0).abs() < 0.1);
+    // Read noise in electrons is that of the same light.
+    assert!((number(&plain, "read_noise") - number(&bent, "read_noise")).abs() < 1e-2);
+    assert!(bent.contains("shoulder = { start = 0.7500, gain = 4 }") && !plain.contains("shoulder"));
 }
