@@ -8,7 +8,7 @@ mod shapes;
 use calibench_model::Scene;
 
 use super::{Picture, Piece, Renderer, orient};
-use crate::optics::{Motion, Optics};
+use crate::optics::{Motion, Optics, Tail};
 use shapes::{Spot, pixel_mean};
 
 const SIZE: usize = 40;
@@ -145,6 +145,27 @@ fn a_motion_is_the_mean_over_a_line_of_shifts() {
 }
 
 #[test]
+fn a_tail_is_the_sum_of_two_gaussians_by_their_shares() {
+    let motion = Some(Motion { length: 2.5, direction: 0.6 });
+    for (plain, jitter) in [
+        (Optics { blur: 0.6, ..Optics::default() }, vec![]),
+        (Optics { blur: 0.6, motion, aperture: 0.8, ..Optics::default() }, vec![]),
+        (Optics { blur: 0.6, ..Optics::default() }, (0..SIZE).map(|row| 0.1 * row as f64 - 2.0).collect()),
+    ] {
+        let tail = Tail { share: 0.3, blur: 3.0 };
+        let pieces = || [disc((17.3, 21.9), 8.4), polygon(&[(30.2, -4.0), (60.0, 3.0), (36.0, 52.0)])].concat();
+        let grey = |optics: &Optics| {
+            let picture = Picture { width: SIZE, height: SIZE, background: 0.2, pieces: pieces() };
+            Renderer::new(optics, SIZE, SIZE).unwrap().render(&picture, &jitter).into_grey()
+        };
+        let (both, core, wide) = (grey(&Optics { tail: Some(tail), ..plain }), grey(&plain), grey(&Optics { blur: 3.0, ..plain }));
+        let sum = core.iter().zip(&wide).map(|(core, wide)| 0.7 * core + 0.3 * wide);
+        let error = both.iter().zip(sum).map(|(both, sum)| (both - sum).abs()).fold(0.0, f32::max);
+        assert!(error < 3e-6, "{plain:?}: {error:e}");
+    }
+}
+
+#[test]
 fn a_blur_that_grows_is_each_pixels_own() {
     let (low, high) = (0.5_f64, 1.6_f64);
     let optics = Optics { blur: low, corner_blur: Some(high), ..Optics::default() };
@@ -209,6 +230,10 @@ fn optics_out_of_range_are_named() {
     assert!(wrong(Optics { aperture: 1.2, ..fine }).contains("photosite"));
     assert!(wrong(Optics { blur: 1.0, corner_blur: Some(0.5), ..fine }).contains("corners"));
     assert!(wrong(Optics { defocus: 2.0, ..fine }).contains("defocus disc needs a Gaussian blur of at least 0.1 px"));
+    let tail = |share, blur| Some(Tail { share, blur });
+    assert!(wrong(Optics { blur: 1.0, tail: tail(0.6, 2.0), ..fine }).contains("the tail's share is 0.6"));
+    assert!(wrong(Optics { blur: 1.0, tail: tail(0.1, 0.8), ..fine }).contains("the tail's blur is 0.8"));
+    assert!(wrong(Optics { tail: tail(0.1, 2.0), ..fine }).contains("the tail's blur"), "beside no blur at all");
 }
 
 /// Levels of blur are blended where a piece reaches; a piece without contrast that reaches everywhere changes nothing.
