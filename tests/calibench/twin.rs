@@ -136,4 +136,8 @@ fn what_makes_no_twin_is_said() {
     fails(&["--board", "9x6:25", "--model", "nonsense"], "--model nonsense");
     fails(&["--board", "9x6:25", "--what-if", "light=0"], "a factor of 0.01 to 100");
     fails(&["--board", "9x6:25", "-m", "forstner:window=11", "--what-if", "nothing.at=1"], "the twin has no [nothing]");
+    // Before anything is rendered: a minute of work is not lost.
+    let started = std::fs::read_dir(here).unwrap().count();
+    fails(&["--board", "9x6:25", "-m", "forstner:window=11", "--what-if", "sensor.smoothing=9"], "from 0 to 5");
+    assert_eq!(std::fs::read_dir(here).unwrap().count(), started);
 }

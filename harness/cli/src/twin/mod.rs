@@ -21,7 +21,7 @@ use calibench_records::results::Trial;
 use calibench_report::json::TwinAnswer;
 use calibench_report::twin::{page, pictures, verdict};
 use calibench_twin::score::Rms;
-use calibench_twin::{Fitted, Geometry, Scene, ViewLook, fitted};
+use calibench_twin::{Design, Fitted, Geometry, Scene, ViewLook, fitted};
 use clap::Args;
 use rayon::prelude::*;
 
@@ -110,6 +110,10 @@ impl Twin {
             real.material.field = self.field(&modelled.corners)?;
             let scene = scene_of(&modelled, &board, &reader, &geometry)?;
             let studio = Studio::new(&modelled, &geometry, scene, context.registry()?)?;
+            let changes = self.changes()?;
+            // A change that cannot be is said before anything is rendered.
+            let plain = Design::plain(modelled.stations.len());
+            changes.iter().try_for_each(|change| studio.scenario(&change.text(&studio, &plain)?).map(drop))?;
             for (name, content) in files(&modelled)? {
                 folder.write::<Failure>(name, |file| Ok(file.write_all(&content)?))?;
             }
@@ -117,7 +121,7 @@ impl Twin {
             let found = fitted(&look, |design, trial| studio.look(design, trial))?.ok_or_else(no_edge)?;
             let real_held_out = held_out(&real.material, &modelled.model)?;
             let found = self.with_the_rest(context, &studio, (found, &modelled), &real_held_out, &methods)?;
-            let scored = self.scored(context, folder, &studio, (&found, &modelled), real_held_out, &methods)?;
+            let scored = self.scored(context, folder, &studio, (&found, &modelled), (real_held_out, &changes), &methods)?;
             let doubts = real.doubts.iter().chain(&modelled.doubts).cloned().collect();
             let answer = told(&scored, (&look, &found), (&modelled.model.label, board.square), doubts);
             write_page(folder, &answer)?;
@@ -180,7 +184,7 @@ impl Twin {
         folder: &NewFolder,
         studio: &Studio<'_>,
         (found, modelled): (&Fitted, &Modelled),
-        real_held_out: Vec<Rms>,
+        (real_held_out, changes): (Vec<Rms>, &[Change]),
         methods: &'m [Configured],
     ) -> Result<Scored<'m>, Failure> {
         let model = &modelled.model;
@@ -200,7 +204,7 @@ impl Twin {
             errors: true_errors(&twin.trial, methods.len(), &truth),
             cases: Vec::new(),
         };
-        for change in self.changes()? {
+        for change in changes {
             let passing = tempfile::tempdir()?;
             let text = change.text(studio, &found.design)?;
             let save = |name: &str, image: &Image<'_>| saved(passing.path(), name, image, studio.is_deep());
