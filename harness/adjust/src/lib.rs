@@ -36,7 +36,7 @@ pub use quality::{
     scale_of, snoop,
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
-pub use solution::{Options, Solution, adjust};
+pub use solution::{EXACT, Options, ROUGH, Solution, adjust};
 pub use undetermined::far_points;
 
 /// The example of the README.

@@ -24,11 +24,19 @@ pub struct Options {
     pub most_iterations: usize,
     /// Observations that are left out, by their index; [`Solution::residuals`] lists them as such.
     pub left_out: Vec<usize>,
+    /// Share of the sum of squares that a step must promise for another to follow, as [`EXACT`] or [`ROUGH`].
+    pub worth: f64,
 }
+
+/// [`Options::worth`] of results: a step moves the unknowns by 1e-7 of their standard deviations.
+pub const EXACT: f64 = 1e-14;
+/// [`Options::worth`] where the answer needs few digits: which residuals are long, how far cameras move. Huber's weights take hundreds of steps to the other end;
+/// here the last iteration is one, too.
+pub const ROUGH: f64 = 1e-7;
 
 impl Default for Options {
     fn default() -> Self {
-        Self { huber: None, most_iterations: 100, left_out: Vec::new() }
+        Self { huber: None, most_iterations: 100, left_out: Vec::new(), worth: EXACT }
     }
 }
 
@@ -75,7 +83,8 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
         return Err(AdjustError::Undetermined(Box::new(defect)));
     }
     let engine = Engine::new(network, layout, options.huber.map_or(Loss::Squares, Loss::Huber));
-    let mut end = engine.descend(start, options.most_iterations)?;
+    let mut end = engine.descend(start, options.most_iterations, options.worth)?;
+    end.converged |= options.worth > EXACT;
     let solved = determined(&engine, &mut end)?;
     end.normals.release();
     let solution = Solution { engine, end, solved, datum: network.datum.clone() };

@@ -192,6 +192,6 @@ impl Calibration<'_> {
     /// How it was adjusted, without what was rejected.
     pub(crate) fn options(&self) -> Options {
         let left_out = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
-        Options { huber: self.huber, most_iterations: ITERATIONS, left_out }
+        Options { huber: self.huber, most_iterations: ITERATIONS, left_out, ..Options::default() }
     }
 }

@@ -1,4 +1,6 @@
-//! Points whose rays are as good as parallel.
+//! Points of a reconstruction that nothing holds: their rays are as good as parallel, or do not meet.
+
+use std::collections::BTreeSet;
 
 use calibench_adjust::{Datum, Network, far_points};
 
@@ -18,17 +20,32 @@ impl Prepared {
         while iterations < ITERATIONS {
             let prepared = left.as_ref().unwrap_or(self);
             let Ok(Some(points)) = far_points(&prepared.network, iterations) else { break };
-            match prepared.without(&points) {
-                Some(without) => left = Some(without),
+            match prepared.without(&points, "its point is very far away") {
+                Some((without, names)) => left = Some(Self { far: prepared.far.iter().cloned().chain(names).collect(), ..without }),
                 None => iterations *= 2,
             }
         }
         left
     }
 
-    /// The same without points of the network, and without what is seen of them; `None` if all stay. Points of distances and lengths do, so that they are named if they
-    /// cannot be determined.
-    fn without(&self, points: &[usize]) -> Option<Self> {
+    /// A reconstruction without the points whose last two rays do not meet: either may be wrong. `None` where there are none, or where start values were not given.
+    pub(crate) fn without_disputed_points(&self) -> Option<Self> {
+        if !self.is_given {
+            return None;
+        }
+        let (solution, found, _) = self.solution().ok()?;
+        let (seen, mut rays) = (&solution.network().observations, vec![0; solution.points().len()]);
+        seen.iter().for_each(|o| rays[o.point] += 1);
+        found.iter().filter(|found| found.left_out).for_each(|found| rays[seen[found.observation].point] -= 1);
+        let kept = found.iter().filter(|found| !found.left_out).map(|found| seen[found.observation].point);
+        let points: Vec<usize> = kept.filter(|point| rays[*point] <= 2).collect::<BTreeSet<usize>>().into_iter().collect();
+        let (without, names) = self.without(&points, "the last two rays of its point do not meet")?;
+        Some(Self { disputed: names, ..without })
+    }
+
+    /// The same without points of the network, and without what is seen of them, and their names; `None` if all stay. Points of distances and lengths do, so that they are
+    /// named if they cannot be determined.
+    fn without(&self, points: &[usize], why: &str) -> Option<(Self, Vec<String>)> {
         let is_needed = |point: usize| {
             let is_end = |ends: &[usize; 2]| ends.contains(&point);
             self.network.distances.iter().any(|distance| is_end(&distance.points)) || self.lengths.iter().any(is_end)
@@ -41,19 +58,19 @@ impl Prepared {
         let network = &mut prepared.network;
         let mut goes = vec![false; network.points.len()];
         points.iter().for_each(|&point| goes[point] = true);
-        prepared.far.extend(network.points.iter().zip(&goes).filter(|(_, goes)| **goes).map(|(point, _)| point.name.clone()));
+        let names = network.points.iter().zip(&goes).filter(|(_, goes)| **goes).map(|(point, _)| point.name.clone()).collect();
         let mut place = 0;
         let places: Vec<usize> = goes.iter().map(|goes| (place, place += usize::from(!goes)).0).collect();
         let keeps: Vec<bool> = network.observations.iter().map(|observation| !goes[observation.point]).collect();
         let lost = prepared.sights.iter().zip(&keeps).filter(|(_, keeps)| !**keeps);
-        prepared.left_out.extend(lost.map(|(&sight, _)| LeftOut { sight: sight as usize, why: "its point is very far away".into() }));
+        prepared.left_out.extend(lost.map(|(&sight, _)| LeftOut { sight: sight as usize, why: why.into() }));
         prepared.left_out.sort_by_key(|left_out| left_out.sight);
         retain(&mut prepared.sights, &keeps);
         retain(&mut network.observations, &keeps);
         retain(&mut network.points, &goes.iter().map(|goes| !goes).collect::<Vec<_>>());
         renumber(network, &goes, &places);
         prepared.lengths.iter_mut().flatten().for_each(|point| *point = places[*point]);
-        Some(prepared)
+        Some((prepared, names))
     }
 }
 

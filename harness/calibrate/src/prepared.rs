@@ -44,6 +44,8 @@ pub struct Prepared {
     pub unmeasured: LostRows,
     /// Points of a reconstruction that take no part, since their rays are as good as parallel.
     pub far: Vec<String>,
+    /// Points of a reconstruction that take no part, since the last two of their rays do not meet, and either may be wrong.
+    pub disputed: Vec<String>,
     /// What is to be known of how it was prepared, in words: no doubts.
     pub notes: Vec<String>,
     /// Start values were given for everything, and are not to be looked for.
@@ -88,6 +90,7 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         left_out,
         unmeasured: LostRows::default(),
         far: Vec::new(),
+        disputed: Vec::new(),
         notes: Vec::new(),
         is_given: false,
     })
@@ -98,7 +101,8 @@ impl Prepared {
     pub(crate) fn without_gross_errors(&self) -> Option<Self> {
         let settings = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..self.settings.clone() };
         if self.is_given {
-            return Some(Self { settings, ..self.clone() });
+            let sought = Self { settings, ..self.clone() };
+            return Some(sought.without_disputed_points().unwrap_or(sought));
         }
         let found = prepared(&self.survey, &settings).ok()?;
         Some(Self { unmeasured: self.unmeasured.clone(), ..found })

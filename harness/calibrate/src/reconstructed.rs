@@ -130,6 +130,7 @@ pub fn prepare_reconstruction(
             left_out,
             unmeasured: LostRows::default(),
             far: Vec::new(),
+            disputed: Vec::new(),
             notes: Vec::new(),
             is_given: true,
         },

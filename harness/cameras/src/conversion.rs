@@ -4,7 +4,7 @@ use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, Target, convert};
 use thiserror::Error;
 
-use super::fit::{FitError, calibrated_as, fit_to_format, fit_to_models};
+use super::fit::{FitError, calibrated_as, chosen, fit_to_format, fit_to_models};
 use super::format::Model;
 use super::recognised::are_within;
 use super::target::{Goal, Way};
@@ -59,12 +59,15 @@ pub fn converted(
     let options = ConvertOptions { covariance: covariance.map_err(ConversionError::Covariance)?, ..options.clone() };
     let pitch_um = pitch_um.or(source.pitch_um);
     let named = |(conversion, model): (Conversion, Model)| (conversion, Some(model.name), Some(model.target));
+    let exact =
+        if matches!(goal.way, Way::Best) && source.splines.is_none() { exact_model(goal.format, source, model, pitch_um)? } else { None };
     let (conversion, model, target) = match &goal.way {
         Way::One(_) | Way::AnyOf(_) if model.is_some() => return Err(ConversionError::ModelNamed),
         _ if let Some(splines) = &source.splines => {
             let (conversion, model) = splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?;
             (conversion, model, None)
         }
+        Way::Best if let Some(exact) = exact => named(fit_to_models(goal.format, &[exact], &source.camera, &options)?),
         // A fisheye was asked for: no other camera that the file holds too.
         Way::One(Target::OpenCvFisheye) | Way::Best
             if model.is_none()
@@ -94,6 +97,12 @@ pub fn converted(
         ..NamedCamera::new(source.name.clone(), conversion.camera)
     };
     Ok(Converted { camera, conversion, model, held_exactly })
+}
+
+/// The first of the format's models, or of those that `model` names, of which a formula makes the camera.
+fn exact_model(format: &CameraFormat, source: &NamedCamera, model: Option<&str>, pitch_um: Option<f64>) -> Result<Option<Model>, FitError> {
+    let models = chosen(format, model, pitch_um)?;
+    Ok(models.into_iter().find(|model| model.target.is_exact_for(&source.camera)))
 }
 
 /// `source` as it is, in its own convention.

@@ -129,10 +129,11 @@ fn of_metashape(source: &NamedCamera) -> Vec<Model> {
 /// # Errors
 /// An unknown name; a pitch or a base that is needed and not given.
 pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
+    let name = named_for(name, given.output);
     if let Some(format) = FORMATS.iter().copied().find(|format| format.name == name && !format.models(None).is_empty()) {
         return Ok(Goal { way: Way::Best, format });
     }
-    let ends_in = |ending: &str| given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)));
+    let ends_in = |ending: &str| ends_in(given.output, ending);
     let endings = [("xml", "opencv-xml"), ("json", "opencv-json"), ("npz", "numpy")];
     let opencv = endings.into_iter().find(|(ending, _)| ends_in(ending)).map_or("opencv-yaml", |(_, format)| format);
     let sensor_width = |pitch_um: f64| f64::from(given.source.camera.size().width) * pitch_um * 1e-3;
@@ -164,6 +165,15 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
     Ok(Goal { way: Way::One(target), format })
 }
 
+/// The name of a target as its file's name has it: COLMAP's list in `cameras.bin` is that of bytes, which alone COLMAP reads there.
+pub fn named_for<'n>(name: &'n str, output: Option<&Path>) -> &'n str {
+    if name == "colmap" && ends_in(output, "bin") { "colmap-bin" } else { name }
+}
+
+fn ends_in(path: Option<&Path>, ending: &str) -> bool {
+    path.and_then(Path::extension).is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
+}
+
 fn any_of(models: Vec<Model>, format: &str) -> Result<Goal, TargetError> {
     let format = format_named(format).ok_or_else(|| unknown(format))?;
     Ok(Goal { way: Way::AnyOf(models), format })
@@ -183,6 +193,13 @@ fn unknown(name: &str) -> TargetError {
 mod tests {
     use super::*;
     use calibench_model::camera::{ImageSize, OpenCv};
+
+    #[test]
+    fn a_list_of_colmap_is_of_the_kind_that_its_name_says() {
+        let named = |path: &str| named_for("colmap", Some(Path::new(path)));
+        assert_eq!(["a/cameras.bin", "CAMERAS.BIN", "cameras.txt", "bin"].map(named), ["colmap-bin", "colmap-bin", "colmap", "colmap"]);
+        assert_eq!((named_for("colmap", None), named_for("kapture", Some(Path::new("sensors.bin")))), ("colmap", "kapture"));
+    }
 
     #[test]
     fn every_format_that_is_written_is_a_target() {

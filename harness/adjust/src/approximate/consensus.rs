@@ -1,5 +1,7 @@
 //! Searches against gross errors: few points at random, and what the others say.
 
+use std::ops::Range;
+
 use rand::SeedableRng;
 use rand::seq::index::sample;
 use rand_chacha::ChaCha8Rng;
@@ -15,6 +17,8 @@ const RISK: f64 = 1e-6;
 const WRONG: f64 = 0.45;
 /// Rounds of fitting the agreeing points and asking again which agree.
 const ROUNDS: usize = 20;
+/// Points that are looked at before it is asked whether a model can still be the best.
+pub(super) const AT_A_TIME: usize = 64;
 /// A residual that is never a gross error, px.
 const ROUNDING: f64 = 1e-7;
 
@@ -39,8 +43,8 @@ pub struct Search {
 
 /// The model on which most agree, refined, and the indices that agree with it.
 ///
-/// `size` points determine a model; `freedom` is the number of residuals of a point, 1 or 2. `propose` makes models of chosen points, `square` is the
-/// squared residual of a point, px^2, and `refine` fits a model to all chosen points.
+/// `size` points determine a model; `freedom` is the number of residuals of a point, 1 or 2. `propose` makes models of chosen points, `squares` adds the
+/// squared residuals of a range of points, px^2 ([`each`] makes it of one point's), and `refine` fits a model to all chosen points.
 ///
 /// # Errors
 /// [`ApproximateError::NoSolution`] if no trial gave a model, [`ApproximateError::NoConsensus`].
@@ -52,18 +56,19 @@ pub(super) fn search<M: Clone>(
     freedom: usize,
     options: &Search,
     propose: impl Fn(&[usize]) -> Vec<M>,
-    square: impl Fn(&M, usize) -> f64,
+    squares: impl Fn(&M, Range<usize>, &mut Vec<f64>),
     refine: impl Fn(&M, &[usize]) -> Option<M>,
 ) -> Result<(M, Vec<usize>), ApproximateError> {
     let judge = Judge { count, size, freedom, tolerance: options.tolerance };
-    let squares = |model: &M| (0..count).map(|i| square(model, i)).collect::<Vec<f64>>();
-    let (mut model, mut agreeing) = best_trial(&judge, options.seed, propose, &square).ok_or(ApproximateError::NoSolution)?;
+    let (mut model, mut agreeing) = best_trial(&judge, options.seed, propose, &squares).ok_or(ApproximateError::NoSolution)?;
     for _ in 0..ROUNDS {
         if agreeing.len() <= size {
             break;
         }
         let Some(refined) = refine(&model, &agreeing) else { break };
-        let found = judge.agreeing(&squares(&refined));
+        let mut found = Vec::with_capacity(count);
+        squares(&refined, 0..count, &mut found);
+        let found = judge.agreeing(&found);
         model = refined;
         if found == agreeing {
             break;
@@ -77,6 +82,11 @@ pub(super) fn search<M: Clone>(
     Ok((model, agreeing))
 }
 
+/// The squared residuals of a range of points, from one point's.
+pub(super) fn each<M>(square: impl Fn(&M, usize) -> f64) -> impl Fn(&M, Range<usize>, &mut Vec<f64>) {
+    move |model, range, squares| squares.extend(range.map(|index| square(model, index)))
+}
+
 /// The indices below `count` that are not among `agreeing`, which ascend.
 pub(super) fn others(count: usize, agreeing: &[usize]) -> Vec<usize> {
     let mut agreeing = agreeing.iter().copied().peekable();
@@ -87,7 +97,7 @@ fn best_trial<M>(
     judge: &Judge,
     seed: u64,
     propose: impl Fn(&[usize]) -> Vec<M>,
-    square: impl Fn(&M, usize) -> f64,
+    squares: impl Fn(&M, Range<usize>, &mut Vec<f64>),
 ) -> Option<(M, Vec<usize>)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut best: Option<(f64, M, Vec<usize>)> = None;
@@ -96,7 +106,7 @@ fn best_trial<M>(
         trial += 1;
         for model in propose(&sample(&mut random, judge.count, judge.size).into_vec()) {
             let least = best.as_ref().map(|(least, ..)| *least);
-            let Some((cost, found)) = judge.better(least, |index| square(&model, index)) else { continue };
+            let Some((cost, found)) = judge.better(least, |range, found| squares(&model, range, found)) else { continue };
             let agreeing = judge.agreeing(&found);
             trials = judge.trials(agreeing.len());
             best = Some((cost, model, agreeing));
@@ -143,9 +153,9 @@ impl Judge {
 
     /// The square that just more than half of the points that are not fitted exactly stay below.
     fn median(&self, squares: &[f64]) -> f64 {
-        let mut sorted = squares.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted.get(self.middle()).copied().unwrap_or(f64::INFINITY)
+        let mut some = squares.to_vec();
+        let middle = self.middle();
+        if middle >= some.len() { f64::INFINITY } else { *some.select_nth_unstable_by(middle, f64::total_cmp).1 }
     }
 
     /// The place of the median in order.
@@ -153,31 +163,32 @@ impl Judge {
         ((self.count + self.size) / 2).min(self.count.saturating_sub(1))
     }
 
-    /// The cost of a model and its squares, where it is below `least`. As soon as it cannot be, no further point is looked at: most models are wrong, and a
-    /// picture of a point takes longer than all else.
-    fn better(&self, least: Option<f64>, square: impl Fn(usize) -> f64) -> Option<(f64, Vec<f64>)> {
+    /// The cost of a model and its squares, where it is below `least`. As soon as it cannot be, no further points are looked at: most models are wrong, and
+    /// pictures of points take longer than all else.
+    fn better(&self, least: Option<f64>, squares_of: impl Fn(Range<usize>, &mut Vec<f64>)) -> Option<(f64, Vec<f64>)> {
         let mut squares = Vec::with_capacity(self.count);
         let Some(least) = least else {
-            squares.extend((0..self.count).map(square));
+            squares_of(0..self.count, &mut squares);
             return Some((self.cost(&squares), squares));
         };
         let (mut larger, mut sum) = (0, 0.0);
-        for index in 0..self.count {
-            let square = square(index);
+        while squares.len() < self.count {
+            let start = squares.len();
+            squares_of(start..(start + AT_A_TIME).min(self.count), &mut squares);
             let lost = match self.tolerance {
                 Tolerance::Unknown => {
-                    larger += usize::from(square.is_nan() || square >= least);
+                    larger += squares[start..].iter().filter(|square| square.is_nan() || **square >= least).count();
                     larger >= self.count - self.middle()
                 }
                 Tolerance::Pixels(_) => {
-                    sum += square.min(self.limit(&[]));
+                    let limit = self.limit(&[]);
+                    squares[start..].iter().for_each(|square| sum += square.min(limit));
                     sum >= least
                 }
             };
             if lost {
                 return None;
             }
-            squares.push(square);
         }
         let cost = self.cost(&squares);
         (cost < least).then_some((cost, squares))
@@ -217,7 +228,7 @@ mod tests {
         };
         let propose = |chosen: &[usize]| vec![through(points[chosen[0]], points[chosen[1]])];
         let square = |m: &[f64; 2], i: usize| (points[i][1] - m[0] - m[1] * points[i][0]).powi(2);
-        search(points.len(), 2, 1, &Search { seed, tolerance }, propose, square, refine)
+        search(points.len(), 2, 1, &Search { seed, tolerance }, propose, each(square), refine)
     }
 
     #[test]
@@ -245,7 +256,7 @@ mod tests {
         };
         let (mut better, mut spared) = (0, 0);
         for round in 0..2000 {
-            let count = 3 + round % 12;
+            let count = 3 + round % 150;
             let tolerance = [Tolerance::Unknown, Tolerance::Pixels(0.7), Tolerance::Pixels(f64::INFINITY)][round % 3];
             let judge = Judge { count, size: 3.min(count), freedom: 2, tolerance };
             let of = |draw: &mut dyn FnMut() -> f64| match (8.0 * draw()) as u32 {
@@ -257,13 +268,13 @@ mod tests {
             // Some are as good, not better.
             let least = if draw() < 0.3 { judge.cost(&squares) } else { draw() * [1.0, count as f64][usize::from(round % 3 > 0)] };
             let looked = std::cell::Cell::new(0);
-            let found = judge.better(Some(least), |index| {
-                looked.set(looked.get() + 1);
-                squares[index]
+            let found = judge.better(Some(least), |range, found| {
+                looked.set(looked.get() + range.len());
+                found.extend_from_slice(&squares[range]);
             });
             let cost = judge.cost(&squares);
             assert_eq!(found, (cost < least).then(|| (cost, squares.clone())), "{tolerance:?} {least} {squares:?}");
-            assert_eq!(judge.better(None, |index| squares[index]), Some((cost, squares.clone())));
+            assert_eq!(judge.better(None, |range, found| found.extend_from_slice(&squares[range])), Some((cost, squares.clone())));
             better += usize::from(found.is_some());
             spared += usize::from(looked.get() < count);
         }

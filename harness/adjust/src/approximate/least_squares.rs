@@ -6,8 +6,8 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::descent::{Damping, Descent, descend};
 
-/// Hardly any at last.
-const DAMPING: Damping = Damping { first: 1e-5, again: 0.0, least: 2e-15, rest: 1e-16, most: 2e9, factors: (0.05, 20.0) };
+/// None at last.
+const DAMPING: Damping = Damping { first: 1e-5, again: 1e-16, least: 2e-15, rest: 0.0, most: 2e9, factors: (0.05, 20.0) };
 
 /// Steps at most.
 const MOST_STEPS: usize = 100;
@@ -43,6 +43,24 @@ impl<const N: usize> Normal<N> {
         }
         self.squares += w * w;
         self.rows += 1;
+    }
+
+    /// Adds `rows` rows by the products of their columns with each other: unknowns, then `w`; `width` numbers a row of products, of which those on and below the diagonal count.
+    pub(super) fn add_products(&mut self, products: &[f64], width: usize, rows: usize) {
+        for j in 0..N {
+            for i in j..N {
+                self.matrix[(i, j)] += products[i * width + j];
+            }
+            self.right[j] -= products[N * width + j];
+        }
+        self.squares += products[N * width + N];
+        self.rows += rows;
+    }
+
+    /// The same equations for other unknowns, of which `by` makes these.
+    pub(super) fn of_others(&self, by: &SMatrix<f64, N, N>) -> Self {
+        let whole = SMatrix::from_fn(|i, j| self.matrix[(i.max(j), i.min(j))]);
+        Self { matrix: by.transpose() * whole * by, right: by.transpose() * self.right, ..*self }
     }
 
     /// Rows minus unknowns, none if negative.
@@ -103,8 +121,12 @@ where
         Some(promised)
     }
 
-    fn arrives(&mut self, _: f64) -> bool {
-        false
+    fn arrives(&mut self, promised: f64) -> bool {
+        let arrives = promised <= DIGITS * self.here.squares;
+        if arrives {
+            self.state = (self.moved)(&self.state, &self.step);
+        }
+        arrives
     }
 
     fn go(&mut self) -> Result<bool, Infallible> {
@@ -125,7 +147,7 @@ where
 
 /// The least-squares solution from `start`, with its normal equations. `None` if `normal` has none for the start.
 ///
-/// The last steps are hardly damped, so that the end is that of Gauss-Newton.
+/// The last step is that of Gauss-Newton, where the sum of squares has no digits left to judge it by.
 pub(super) fn minimise<S, const U: usize>(
     start: S,
     normal: impl Fn(&S) -> Option<Normal<U>>,
@@ -135,6 +157,19 @@ pub(super) fn minimise<S, const U: usize>(
     let mut place = Place { state: start, here, step: SVector::zeros(), before: here.squares, normal, moved };
     let Ok(_) = descend(&mut place, &DAMPING, MOST_STEPS);
     Some((place.state, place.here))
+}
+
+#[cfg(test)]
+impl<const N: usize> Normal<N> {
+    /// The largest difference of two, of matrices and right sides of unit diagonal, and of the squares.
+    pub(super) fn differs(&self, other: &Self) -> f64 {
+        let Some(scales) = self.scales() else { return f64::INFINITY };
+        let matrices = (self.scaled(&scales, 0.0) - other.scaled(&scales, 0.0)).amax();
+        let size = self.squares.sqrt();
+        let right = (self.right - other.right).component_mul(&scales).amax() / size;
+        let squares = (self.squares / other.squares - 1.0).abs();
+        if self.rows == other.rows { matrices.max(right).max(squares) } else { f64::INFINITY }
+    }
 }
 
 #[cfg(test)]

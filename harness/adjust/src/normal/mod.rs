@@ -13,5 +13,6 @@ mod tests;
 
 pub(crate) use blocks::{Normals, Rows, Scratch, linearise, residuals};
 pub(crate) use distances::Stretch;
+pub(crate) use gram::{BLOCK, LANES, Tile, gram};
 pub(crate) use image_equations::{Lost, Residual};
 pub(crate) use robust::Loss;

@@ -6,6 +6,7 @@ mod image_information;
 mod lengths;
 mod projection_uncertainty;
 mod reliability;
+mod residual_length;
 mod residuals;
 mod robust;
 mod significance;

@@ -12,6 +12,7 @@ use crate::solve::{Coupling, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
 
 use super::covariance::{Covariances, Variance};
+use super::residual_length::length;
 
 /// A test of single observations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,9 @@ pub struct PointReliability {
     pub w: [f64; 2],
     /// Minimal detectable biases of x and y, px; infinite where nothing checks.
     pub detectable: [f64; 2],
+    /// Length of the residual by its own covariance, a number: as that of two normal numbers if nothing is wrong. Where one direction alone is checked (a
+    /// point in two images has the other one to itself), the length that is as rare. `None` where nothing checks.
+    pub length: Option<f64>,
 }
 
 /// The same of an observed parameter, coordinate or orientation.
@@ -330,6 +334,7 @@ pub(crate) fn image_point(
         redundancy: [0, 1].map(|i| numbers[(i, i)].clamp(0.0, 1.0)),
         w: [0, 1].map(|i| root(i).map_or(0.0, |root| weighted[i] / (sigma0 * root))),
         detectable: [0, 1].map(|i| root(i).map_or(f64::INFINITY, |root| noncentrality * sigma0 / root)),
+        length: length(&rest, Vector2::from(precision.whitened(residual.px)) / sigma0),
     }
 }
 

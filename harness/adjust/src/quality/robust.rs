@@ -6,8 +6,8 @@ use calibench_model::upper_median;
 
 use super::snooping::Found;
 use crate::AdjustError;
-use crate::network::Network;
-use crate::solution::{Options, Solution, adjust_from};
+use crate::network::{Network, Status};
+use crate::solution::{Options, ROUGH, Solution, adjust_from};
 use crate::state::State;
 
 /// The median of the length of a vector of two normal numbers.
@@ -18,10 +18,14 @@ const ROUNDING: f64 = 1e-5;
 const STANDS: f64 = 0.01;
 /// Adjustments at most, until scale or rejections stand.
 const ROUNDS: usize = 12;
+/// Steps of each where gross errors are only to be shown.
+const ROUGH_STEPS: usize = 30;
 /// Huber's bound of the adjustment that shows gross errors, in standard deviations.
 const BOUND: f64 = 1.5;
 /// Residuals (as vectors) beyond so many standard deviations are gross: what an operator scatters now and then is left to Baarda's test.
 const GROSS: f64 = 10.0;
+/// Rays that a point needs.
+const NEEDED: usize = 2;
 /// Share of the image points beyond, and their number, up to which they are left to be looked at one after the other.
 const FEW: (f64, usize) = (0.01, 3);
 
@@ -77,7 +81,37 @@ impl Solution<'_> {
         };
         // What cannot be pictured any more is as far off as can be.
         let each = self.each_residual().map(|r| (r.observation, r.v.map_or(f64::INFINITY, |v| length(r.observation, v))));
-        each.filter(|(index, length)| *length > GROSS && !never.contains(index)).collect()
+        let mut gross: Vec<(usize, f64)> = each.filter(|(index, length)| *length > GROSS && !never.contains(index)).collect();
+        // Of a point that would be left with too few rays the shortest stay.
+        let mut rays = Rays::without(self.network(), never);
+        gross.sort_by(|a, b| b.1.total_cmp(&a.1));
+        gross.retain(|(index, _)| rays.take(*index));
+        gross.sort_by_key(|(index, _)| *index);
+        gross
+    }
+}
+
+/// How many rays each point has, and which it cannot do without.
+pub(super) struct Rays<'n> {
+    network: &'n Network,
+    left: Vec<usize>,
+}
+
+impl<'n> Rays<'n> {
+    /// Of all observations but those of `gone`.
+    pub(super) fn without(network: &'n Network, gone: &BTreeSet<usize>) -> Self {
+        let mut left = vec![0; network.points.len()];
+        network.observations.iter().enumerate().filter(|(index, _)| !gone.contains(index)).for_each(|(_, o)| left[o.point] += 1);
+        Self { network, left }
+    }
+
+    /// Takes an observation out if its point can do without: what is wrong with one that cannot moves nothing else.
+    pub(super) fn take(&mut self, observation: usize) -> bool {
+        let point = self.network.observations[observation].point;
+        let is_free = self.network.points[point].coordinates.contains(&Status::Free);
+        let goes = !is_free || self.left[point] > NEEDED;
+        self.left[point] -= usize::from(goes);
+        goes
     }
 }
 
@@ -97,8 +131,12 @@ pub fn scale_of(pairs: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
 ///
 /// Source: Huber 1981, chapter 7.
 pub fn adjust_robustly<'n>(network: &'n Network, options: &Options, bound: f64) -> Result<(Solution<'n>, f64), AdjustError> {
+    robustly(network, options, bound, bound)
+}
+
+/// [`adjust_robustly`], of which the first adjustment has the bound `scaled`, in a-priori standard deviations.
+fn robustly<'n>(network: &'n Network, options: &Options, bound: f64, mut scaled: f64) -> Result<(Solution<'n>, f64), AdjustError> {
     let at = |scaled: f64| Options { huber: Some(scaled), ..options.clone() };
-    let mut scaled = bound;
     let mut solution = adjust_from(network, &at(scaled), State::of(network))?;
     for _ in 0..ROUNDS {
         let Some(scale) = solution.scale().filter(|scale| *scale > ROUNDING) else { break };
@@ -119,8 +157,17 @@ pub(super) fn without_gross<'n>(network: &'n Network, options: &Options) -> Opti
         ..options.clone()
     };
     let start = State::of(network);
-    let mut not_pictured = (0..network.observations.len()).filter(|&i| start.pixel(network, &network.observations[i]).is_none());
-    let (mut solution, _) = adjust_robustly(network, &left_out(&mut not_pictured), BOUND).ok()?;
+    let (mut not_pictured, mut white) = (Vec::new(), Vec::new());
+    for (index, observation) in network.observations.iter().enumerate() {
+        match start.pixel(network, observation) {
+            Some(pixel) => white.push(observation.precision.whitened([pixel.x - observation.position.x, pixel.y - observation.position.y])),
+            None => not_pictured.push(index),
+        }
+    }
+    // A bound far below what the residuals scatter makes all of them long: sums of lengths, which take a thousand steps to their least.
+    let scaled = BOUND * scale_of(white.into_iter())?.max(1.0);
+    let rough = Options { worth: ROUGH, most_iterations: ROUGH_STEPS, ..left_out(&mut not_pictured.into_iter()) };
+    let (mut solution, _) = robustly(network, &rough, BOUND, scaled).ok()?;
     let never: BTreeSet<usize> = options.left_out.iter().copied().collect();
     let few = FEW.1.max((FEW.0 * network.observations.len() as f64) as usize);
     let mut gross: Vec<(usize, f64)> = Vec::new();

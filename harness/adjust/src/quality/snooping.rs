@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::reliability::Test;
-use super::robust::without_gross;
+use super::robust::{Rays, without_gross};
 use crate::AdjustError;
 use crate::network::Network;
 use crate::solution::{Options, Solution, adjust_from};
@@ -76,9 +76,14 @@ struct Search<'o, 'n> {
 impl<'n> Search<'_, 'n> {
     /// Least squares without what was left out, and without `more`.
     fn without(&self, more: &[usize]) -> Result<Solution<'n>, AdjustError> {
-        let found = self.found.iter().filter(|found| found.left_out).map(|found| found.observation);
-        let left_out = self.options.left_out.iter().copied().chain(found).chain(more.iter().copied()).collect();
+        let left_out = self.gone().into_iter().chain(more.iter().copied()).collect();
         adjust_from(self.solution.network(), &Options { left_out, ..self.options.clone() }, self.solution.end.state.clone())
+    }
+
+    /// What was left out.
+    fn gone(&self) -> BTreeSet<usize> {
+        let found = self.found.iter().filter(|found| found.left_out).map(|found| found.observation);
+        self.options.left_out.iter().copied().chain(found).collect()
     }
 
     /// How many more may be left out.
@@ -93,6 +98,15 @@ impl<'n> Search<'_, 'n> {
             let mut suspects = self.suspects()?;
             if suspects.is_empty() {
                 return Ok(());
+            }
+            let (mut rays, found) = (Rays::without(self.solution.network(), &self.gone()), &mut self.found);
+            suspects.retain(|suspect| {
+                let goes = rays.take(suspect.observation);
+                found.extend((!goes).then_some(*suspect));
+                goes
+            });
+            if suspects.is_empty() {
+                continue;
             }
             let rest = self.rest().min(suspects.len());
             let observations: Vec<usize> = suspects[..rest].iter().map(|suspect| suspect.observation).collect();

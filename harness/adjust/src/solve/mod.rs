@@ -164,8 +164,8 @@ impl<'n> Engine<'n> {
     ///
     /// # Errors
     /// [`AdjustError::NotPictured`] by the start values.
-    pub(crate) fn descend(&self, start: State, most_iterations: usize) -> Result<End, AdjustError> {
-        let mut place = Place::at(self, start)?;
+    pub(crate) fn descend(&self, start: State, most_iterations: usize, worth: f64) -> Result<End, AdjustError> {
+        let mut place = Place::at(self, start, worth)?;
         let Descended { iterations, gain, converged } = descend(&mut place, &DAMPING, most_iterations)?;
         let Place { state, normals, solved, .. } = place;
         Ok(End { state, normals, iterations, gain, converged, solved })

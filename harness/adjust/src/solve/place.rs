@@ -6,8 +6,6 @@ use crate::descent::Descent;
 use crate::normal::{Normals, Scratch, residuals};
 use crate::state::{State, Step};
 
-/// Share of the sum of squares that a step must promise for another to follow: it moves the unknowns by 1e-7 of their standard deviations.
-const WORTH: f64 = 1e-14;
 /// Share of the sum of squares that is beyond its digits: a step that promises no more changes neither it nor the normal equations, only the unknowns.
 const NOTHING: f64 = 1e-16;
 /// Share that is so little that the sums themselves may not tell it.
@@ -42,6 +40,8 @@ pub(super) struct Place<'e, 'n> {
     crept: usize,
     /// The sum of squares before the last step.
     before: f64,
+    /// [`crate::Options::worth`].
+    worth: f64,
     /// The normal equations, solved, where the last step needed that.
     pub(super) solved: Option<Solved>,
 }
@@ -51,12 +51,12 @@ impl<'e, 'n> Place<'e, 'n> {
     ///
     /// # Errors
     /// [`AdjustError::NotPictured`].
-    pub(super) fn at(engine: &'e Engine<'n>, state: State) -> Result<Self, AdjustError> {
+    pub(super) fn at(engine: &'e Engine<'n>, state: State, worth: f64) -> Result<Self, AdjustError> {
         let (mut scratch, mut normals) = (Scratch::default(), Normals::default());
         engine.linearise(&state, &mut scratch, &mut normals).map_err(|lost| engine.not_pictured(&state, lost))?;
         let (step, before) = (engine.zero_step(), normals.cost);
         let (schur, factor, solved) = (Schur::default(), None, None);
-        Ok(Self { engine, state, normals, scratch, schur, step, factor, undamped: true, looks: LOOKS, crept: 0, before, solved })
+        Ok(Self { engine, state, normals, scratch, schur, step, factor, undamped: true, looks: LOOKS, crept: 0, before, worth, solved })
     }
 
     /// Solves the normal equations made at `state` for the step.
@@ -163,6 +163,6 @@ impl Descent for Place<'_, '_> {
     fn ends(&self, promised: f64, before: f64, lower: bool) -> bool {
         let (cost, floor) = (self.before, self.engine.floor);
         let stands = (promised <= LITTLE * cost || promised <= NOISE * floor) && promised > 0.25 * before;
-        promised <= WORTH * cost + floor || (lower && stands)
+        promised <= self.worth * cost + floor || (lower && stands)
     }
 }

@@ -40,7 +40,7 @@ fn couplings_made_anew_are_those_kept() {
     assert!(kept.layout.keeps_couplings && kept.plan.eliminated == Eliminated::Points);
     let mut anew = kept.clone();
     anew.layout.keeps_couplings = false;
-    let ends = [&kept, &anew].map(|engine| engine.descend(State::of(&network), 50).unwrap());
+    let ends = [&kept, &anew].map(|engine| engine.descend(State::of(&network), 50, crate::EXACT).unwrap());
     assert!(ends.iter().all(|end| end.converged) && ends[1].normals.point_pose.is_empty() && ends[1].normals.point_camera.is_empty());
     assert_eq!((ends[0].normals.cost, ends[0].iterations), (ends[1].normals.cost, ends[1].iterations));
     assert!(ends[0].state.points == ends[1].state.points);

@@ -7,6 +7,7 @@ use crate::AdjustError;
 use crate::datum::hold;
 use crate::network::{Layout, Network};
 use crate::normal::Loss;
+use crate::solution::EXACT;
 use crate::solve::{End, Engine};
 use crate::state::State;
 
@@ -28,7 +29,7 @@ pub fn far_points(network: &Network, iterations: usize) -> Result<Option<Vec<usi
         return Err(AdjustError::Undetermined(Box::new(defect)));
     }
     let engine = Engine::new(network, layout, Loss::Squares);
-    let end = engine.descend(State::of(network), iterations)?;
+    let end = engine.descend(State::of(network), iterations, EXACT)?;
     let points = of_unknown_distance(&engine, &end, UNKNOWN[usize::from(end.converged)]);
     Ok((!end.converged || !points.is_empty()).then_some(points))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use calibench_adjust::{Network, Options, Snooping, Solution, Test, Variance, adjust, adjust_robustly, snoop};
+use calibench_adjust::{Network, Options, Snooping, Solution, Test, Variance, adjust, adjust_robustly, scale_of, snoop};
 use calibench_model::camera::CameraModel;
 use rand::RngExt;
 
@@ -88,5 +88,68 @@ fn what_is_left_out_is_what_is_wrong() {
         let [lost, found, right] = [0, 1, 2].map(|k| mean(all.iter().map(|values| values[k])));
         // One of a thousand sets loses a good point.
         assert!(lost < 0.05 && (found / right - 1.0).abs() < 0.02, "{share}: {lost} good points lost, {found} for {right}");
+    }
+}
+
+/// A free block whose points are seen from two images up, with noise and what is stated of it; a share of the image points off by 4 to 20 px.
+fn block(seed: u64, share: f64, stated: f64) -> (Network, BTreeSet<usize>) {
+    let mut network = networks::block(networks::opencv(), [5, 3], [22, 12], seed);
+    networks::control(&mut network, 60, 0.05);
+    let mut seen = vec![0; network.points.len()];
+    network.observations.retain(|o| {
+        seen[o.point] += 1;
+        o.point % 3 > 0 || seen[o.point] <= 2
+    });
+    let mut random = networks::random(seed);
+    networks::shake_pixels(&mut network, 0.5, &mut random);
+    let mut wrong = BTreeSet::new();
+    for (index, o) in network.observations.iter_mut().enumerate() {
+        o.precision = calibench_adjust::Precision::Sigma(stated);
+        let [chosen, length, angle] = [0; 3].map(|_| random.random::<f64>());
+        if chosen < share {
+            let (length, angle) = (4.0 + 16.0 * length, std::f64::consts::TAU * angle);
+            (o.position.x, o.position.y) = (o.position.x + length * angle.cos(), o.position.y + length * angle.sin());
+            wrong.insert(index);
+        }
+    }
+    (network, wrong)
+}
+
+/// Of points in two images up to ten: by their own covariances residuals have the lengths of two normal numbers, by the noise alone more are long.
+#[test]
+fn normalised_lengths_are_those_of_two_normal_numbers_however_little_checks() {
+    let (mut by_own, mut by_noise) = (Vec::new(), Vec::new());
+    for seed in 0..12 {
+        let (network, _) = block(seed, 0.0, 0.5);
+        let solution = adjust(&network, &Options::default()).unwrap();
+        let points = solution.reliability(Test::default()).unwrap().points;
+        let one_direction = points.iter().filter(|point| point.redundancy[0] + point.redundancy[1] < 0.51).count();
+        assert!(one_direction > 10, "points in two images: {one_direction}");
+        by_own.extend(points.iter().filter_map(|point| point.length));
+        by_noise.extend(solution.each_white_residual().map(|[x, y]| x.hypot(y)));
+    }
+    let scale = |lengths: &[f64]| scale_of(lengths.iter().map(|length| [*length, 0.0])).unwrap();
+    let beyond = |lengths: &[f64], limit: f64| lengths.iter().filter(|length| **length > limit * scale(lengths)).count() as f64;
+    for limit in [1.0, 2.0, 3.0, 3.5] {
+        let expected = by_own.len() as f64 * (-0.5 * limit * limit as f64).exp();
+        let found = beyond(&by_own, limit);
+        assert!((found - expected).abs() < 4.0 * expected.sqrt(), "beyond {limit}: {found} of {}, {expected} expected", by_own.len());
+    }
+    assert!((scale(&by_own) - 1.0).abs() < 0.02, "{}", scale(&by_own));
+    let expected = by_noise.len() as f64 * (-0.5_f64 * 3.5 * 3.5).exp();
+    assert!(beyond(&by_noise, 3.5) > expected + 3.0 * expected.sqrt(), "{} {expected}", beyond(&by_noise, 3.5));
+}
+
+/// Gross errors are found whatever was said of the precision: a fifth of the truth, or five times as much.
+#[test]
+fn what_is_gross_together_is_found_under_wrong_standard_deviations() {
+    for stated in [0.1, 0.5, 2.5] {
+        let (network, wrong) = block(3, 0.03, stated);
+        let test = Test { alpha: 1e-3 / network.observations.len() as f64, variance: Variance::Estimated, ..Test::default() };
+        let (solution, found) = snoop(&network, &Options::default(), Snooping { test, most: 300 }).unwrap();
+        let together = found.iter().filter(|found| found.critical == 10.0).count();
+        assert!(together > wrong.len() / 3, "{stated}: {together} of {} together", wrong.len());
+        let sigma = solution.sigma0().unwrap() * stated;
+        assert!((sigma / 0.5 - 1.0).abs() < 0.06, "{stated}: {sigma} px");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use calibench_adjust::{Options, Solution, adjust, scale_of};
+use calibench_adjust::{Options, ROUGH, Reliability, adjust, scale_of};
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 use super::{ALPHA, Cameras};
@@ -10,8 +10,10 @@ use crate::neighbours::are_own;
 use crate::resampled::NEAR;
 use crate::{Calibration, Finding, GrossErrors, Verdict};
 
-/// Residuals (as vectors) beyond so many of their standard deviations are counted: of normal ones `exp(-8)`.
+/// Residuals (as vectors, by their own covariances) beyond so many of their standard deviations are counted: of normal ones `exp(-8)`.
 const BEYOND: f64 = 4.0;
+/// Standard deviations below which residuals are rounding.
+const ROUNDING: f64 = 1e-5;
 /// Huber's bound of the adjustment that shows what they do, in the same.
 const BOUND: f64 = 2.0;
 /// Image points in gross error, as a share, beyond which no estimate is to be trusted.
@@ -22,7 +24,7 @@ pub(crate) const LEFT_OUT: f64 = 0.4;
 
 /// Image points whose residuals are too long.
 struct Found {
-    /// The standard deviation of an image coordinate against the a-priori one from the median residual: gross errors do not change it.
+    /// Their standard deviation from the median: gross errors do not change it.
     scale: f64,
     beyond: u64,
     of: u64,
@@ -30,21 +32,36 @@ struct Found {
     p: f64,
 }
 
-/// Of white residuals; `None` where these are rounding, or there are none.
-fn found(white: impl Iterator<Item = [f64; 2]> + Clone) -> Option<Found> {
-    let scale = scale_of(white.clone()).filter(|scale| *scale > 1e-5)?;
-    let (beyond, of) = white.fold((0, 0), |(beyond, of), [x, y]| (beyond + u64::from(x.hypot(y) > BEYOND * scale), of + 1));
+/// Of the lengths of residuals; `None` of none, or where all are nothing.
+fn found(lengths: &[f64]) -> Option<Found> {
+    let scale = scale_of(lengths.iter().map(|length| [*length, 0.0])).filter(|scale| *scale > 0.0)?;
+    let (beyond, of) = (lengths.iter().filter(|length| **length > BEYOND * scale).count() as u64, lengths.len() as u64);
     let chance = Binomial::new((-0.5 * BEYOND * BEYOND).exp(), of).ok()?;
     Some(Found { scale, beyond, of, p: if beyond == 0 { 1.0 } else { chance.sf(beyond - 1) } })
 }
 
-/// Whether of white residuals no more are long than chance makes.
-pub(super) fn is_clean(white: &[[f64; 2]]) -> bool {
-    found(white.iter().copied()).is_none_or(|found| found.p > ALPHA)
+/// Whether residuals of these lengths are not those of normal errors: more are long than chance makes, or one is longer.
+pub(crate) fn hold_gross(lengths: &[f64]) -> bool {
+    found(lengths).is_some_and(|found| {
+        let longest = lengths.iter().copied().fold(0.0, f64::max);
+        found.p < ALPHA || found.of as f64 * (-0.5 * (longest / found.scale).powi(2)).exp() < ALPHA
+    })
 }
 
-fn white(solution: &Solution<'_>) -> Vec<[f64; 2]> {
-    solution.each_white_residual().collect()
+/// The lengths of residuals by their own standard deviations: of points in few images some are checked less than others, and of all together more are long than of normal numbers.
+pub(crate) fn normalised(reliability: &Reliability) -> Vec<f64> {
+    reliability.points.iter().filter_map(|point| point.length).collect()
+}
+
+/// Whether of white residuals no more are long than chance makes.
+pub(super) fn is_clean(white: &[[f64; 2]]) -> bool {
+    let lengths: Vec<f64> = white.iter().map(|[x, y]| x.hypot(*y)).collect();
+    is_rounding(scale_of(white.iter().copied())) || found(&lengths).is_none_or(|found| found.p > ALPHA)
+}
+
+/// Whether residuals are no more than rounding, by their scale in a-priori standard deviations.
+pub(crate) fn is_rounding(scale: Option<f64>) -> bool {
+    scale.is_none_or(|scale| scale <= ROUNDING)
 }
 
 /// More image points were left out than an estimate can bear, or such as are not wrong for themselves.
@@ -65,11 +82,7 @@ fn wrongly_left_out(calibration: &Calibration<'_>) -> Option<Verdict> {
 impl Calibration<'_> {
     /// Whether residuals are not those of normal errors: more are long than chance makes, or one is longer.
     pub(crate) fn has_gross_errors(&self) -> bool {
-        let white = white(&self.solution);
-        found(white.iter().copied()).is_some_and(|found| {
-            let longest = white.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
-            found.p < ALPHA || found.of as f64 * (-0.5 * (longest / found.scale).powi(2)).exp() < ALPHA
-        })
+        !is_rounding(self.solution.scale()) && self.reliability.as_ref().is_some_and(|reliability| hold_gross(&normalised(reliability)))
     }
 
     /// Whether any image point was left out.
@@ -89,11 +102,13 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
     if let Some(verdict) = wrongly_left_out(calibration) {
         return verdict;
     }
-    let Some(Found { scale, beyond, of, p }) = found(white(&calibration.solution).into_iter()) else {
+    let lengths = calibration.reliability.as_ref().map(normalised).unwrap_or_default();
+    let scale = calibration.solution.scale().filter(|scale| !is_rounding(Some(*scale)));
+    let (Some(scale), Some(Found { beyond, of, p, .. })) = (scale, found(&lengths)) else {
         return Verdict::Untested("the residuals are no more than rounding".into());
     };
     let network = calibration.ended();
-    let options = Options { huber: Some(BOUND * scale), most_iterations: NEAR, ..calibration.options() };
+    let options = Options { huber: Some(BOUND * scale), most_iterations: NEAR, worth: ROUGH, ..calibration.options() };
     let moves = adjust(&network, &options).ok().and_then(|robust| calibration.moves(&Cameras::Others(robust.cameras().to_vec()), scale));
     let finding = Finding { p, moves, explains: 0.0 };
     if p >= ALPHA {

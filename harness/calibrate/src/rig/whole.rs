@@ -1,7 +1,6 @@
 //! From a prepared rig to a calibrated one, with what is in doubt.
 
-use calibench_adjust::{AdjustError, Found, Options, RigSolution, Use, Variance, adjust_rig, scale_of, snoop_rig};
-use statrs::distribution::{Binomial, DiscreteCDF};
+use calibench_adjust::{AdjustError, Found, Options, RigSolution, Test, Variance, adjust_rig, snoop_rig};
 
 use super::calibration::RigCalibration;
 use super::doubts::doubts;
@@ -9,13 +8,10 @@ use super::held::Held;
 use super::leave_out::BySets;
 use super::one_rig::OneRig;
 use super::prepared::RigPrepared;
+use crate::doubt::gross::{hold_gross, is_rounding, normalised};
 use crate::ended::ITERATIONS;
 use crate::{CalibrationError, GrossErrors, Risk};
 
-/// Residuals (as vectors) beyond so many of their standard deviations are counted.
-const BEYOND: f64 = 4.0;
-/// Probability of as many by chance, below which gross errors are sought.
-const ALPHA: f64 = 1e-4;
 /// Share of the image points that is left out of itself, at most: more are no errors of single points.
 const MOST_LEFT_OUT: f64 = 0.1;
 
@@ -67,18 +63,5 @@ fn adjusted(prepared: &RigPrepared) -> Result<(RigSolution<'_>, Vec<Found>), Cal
 
 /// Whether residuals are not those of normal errors: more are long than chance makes, or one is longer.
 fn has_gross_errors(solution: &RigSolution<'_>) -> bool {
-    let given = &solution.rig().network.observations;
-    let white: Vec<[f64; 2]> = solution
-        .residuals()
-        .iter()
-        .filter(|r| r.used != Use::LeftOut)
-        .filter_map(|r| Some(given[r.observation].precision.whitened(r.v?)))
-        .collect();
-    let Some(scale) = scale_of(white.iter().copied()).filter(|scale| *scale > 1e-5) else { return false };
-    let of = white.len() as u64;
-    let beyond = white.iter().filter(|[x, y]| x.hypot(*y) > BEYOND * scale).count() as u64;
-    let Ok(chance) = Binomial::new((-0.5 * BEYOND * BEYOND).exp(), of) else { return false };
-    let longest = white.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
-    let p = if beyond == 0 { 1.0 } else { chance.sf(beyond - 1) };
-    p < ALPHA || of as f64 * (-0.5 * (longest / scale).powi(2)).exp() < ALPHA
+    !is_rounding(solution.scale()) && solution.reliability(Test::default()).is_ok_and(|reliability| hold_gross(&normalised(&reliability)))
 }

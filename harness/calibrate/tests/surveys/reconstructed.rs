@@ -169,6 +169,31 @@ fn what_is_too_little_is_left_out_by_name() {
     assert!(errors.iter().all(|error| (0.0..2.0).contains(error)));
 }
 
+/// Of a point with two rays that do not meet either may be wrong: it takes no part, by name; a wrong ray of many is left out alone.
+#[test]
+fn a_point_whose_last_two_rays_do_not_meet_is_left_out_by_name() {
+    let (mut reconstruction, truth) = ring(0.3);
+    let others = reconstruction.points.len();
+    let place = Point3::new(0.2, -0.1, 0.3);
+    reconstruction.points.push(TiePoint { name: "disputed".into(), position: place });
+    for (image, off) in [(2, 0.0), (5, 40.0)] {
+        let position = truth[image].project(reconstruction.images[image].pose.ray(&place)).unwrap();
+        let position = PixelPoint::new(position.x + 0.7 * off, position.y + off);
+        reconstruction.sights.push(TieSight { image, point: others, position });
+    }
+    reconstruction.sights[17].position.x += 30.0;
+    let sought = Settings { gross: GrossErrors::Sought, ..settings() };
+    let found = prepare_reconstruction(&reconstruction, (&Solved::Lens, Behind::Count), &sought).unwrap();
+    calibrate(&found.prepared, &[], |calibration| {
+        assert_eq!(calibration.prepared.disputed, ["disputed"]);
+        assert_eq!((calibration.prepared.left_out.len(), calibration.solution.points().len()), (2, others));
+        assert_eq!(calibration.found.iter().filter(|found| found.left_out).count(), 1, "{:?}", calibration.found);
+        let sigma0 = calibration.solution.sigma0().unwrap();
+        assert!((0.3..0.7).contains(&sigma0), "{sigma0}");
+    })
+    .unwrap();
+}
+
 /// Rays that part as they go have no point, however far off: the adjustment would chase it for ever.
 #[test]
 fn a_point_that_runs_away_is_left_out_by_name() {

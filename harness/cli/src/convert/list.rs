@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 
+use calibench_cameras::target::named_for;
 use calibench_cameras::{CameraFile, CameraFileError, CameraFormat, CameraList, ListWriter, format_named};
 use rayon::prelude::*;
 
@@ -27,8 +28,8 @@ struct Words {
 impl Convert {
     /// Converts a list to a list; false where one of them is none, and nothing is done.
     pub(super) fn in_pieces(&self, to: &CamerasFile, quiet: bool) -> Result<bool, Failure> {
-        let format =
-            self.to.as_deref().and_then(format_named).filter(|format| self.all && self.files.len() == 1 && format.is_written_in_pieces());
+        let named = self.to.as_deref().map(|to| named_for(to, self.output.as_deref()));
+        let format = named.and_then(format_named).filter(|format| self.all && self.files.len() == 1 && format.is_written_in_pieces());
         let Some(format) = format.filter(|_| !matches!(to, CamerasFile::Folder(_))) else { return Ok(false) };
         let Some(list) = self.reading.list(self.file())? else { return Ok(false) };
         let mut words = Words::default();

@@ -10,12 +10,32 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
     if let Some(camera) = super::wide_angle::exact(source, target) {
         return Some(camera);
     }
-    let camera = closed_form(source, target)?;
+    if loses_terms(source, target) {
+        return None;
+    }
+    let camera = by_formula(source, target, || None)?;
     is_complete(source, target, &camera).then_some(camera)
+}
+
+/// Whether terms of Brown's form are surely lost: asked before the camera is made, since most formats have many models.
+fn loses_terms(source: &Camera, target: &Target) -> bool {
+    let is_brown = match source {
+        Camera::OpenCv(_) => !matches!(target, Target::OpenCv { .. }),
+        Camera::MicMac(_) => !matches!(target, Target::MicMac { .. }),
+        Camera::Agisoft(_) | Camera::Pix4d(_) => true,
+        _ => false,
+    };
+    let is_lost = |form: BrownForm| !matches!(target, Target::Ebner { .. }) && !is_held(&form, target, source);
+    is_brown && (!BrownForm::holds(source) || BrownForm::of(source).is_some_and(is_lost))
 }
 
 /// The camera in the target's convention by formula, without what the target cannot hold; `None` where there is no formula.
 pub(super) fn closed_form(source: &Camera, target: &Target) -> Option<Camera> {
+    by_formula(source, target, || super::wide_angle::exact(source, target))
+}
+
+/// The same; `wide` is what leads to it from a wide-angle model.
+fn by_formula(source: &Camera, target: &Target, wide: impl FnOnce() -> Option<Camera>) -> Option<Camera> {
     match (source, target) {
         (Camera::Photogrammetric(camera), &Target::Photogrammetric { pitch_um, .. }) => {
             Some(without_left_out(pitch(camera, pitch_um).into(), target))
@@ -28,8 +48,7 @@ pub(super) fn closed_form(source: &Camera, target: &Target) -> Option<Camera> {
         (Camera::OpenCvFisheye(_), Target::OpenCvFisheye) => Some(without_left_out(*source, target)),
         (Camera::Photogrammetric(camera), _) if is_pinhole(camera) => BrownForm::of_pinhole(camera)?.to_target(target),
         (Camera::MicMac(camera), &Target::MicMac { .. }) => Some(without_left_out((*camera).into(), target)),
-        _ if super::wide_angle::exact(source, target).is_some() => super::wide_angle::exact(source, target),
-        _ => BrownForm::of(source)?.to_target(target),
+        _ => wide().or_else(|| BrownForm::of(source)?.to_target(target)),
     }
 }
 

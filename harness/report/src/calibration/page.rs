@@ -140,7 +140,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let (prepared, solution) = (calibration.prepared, &calibration.solution);
     let settings = &prepared.settings;
     let counts = solution.counts();
-    let control = prepared.survey.control_points();
+    let control = prepared.survey.control_points().min(prepared.network.points.len());
     let models = (0..calibration.cameras()).map(|camera| {
         let (name, model) = (calibration.of(camera), calibration.camera(camera).convention().name);
         let images = if name.is_empty() { String::new() } else { format!(", {} images", images_of(calibration, camera).count()) };

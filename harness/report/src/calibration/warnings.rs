@@ -55,13 +55,14 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     }
     warnings.extend(lost(calibration.prepared.unmeasured.iter().map(|[_, target, status, _]| (target, status))));
     warnings.extend(calibration.prepared.notes.iter().cloned());
-    let far = &calibration.prepared.far;
-    if !far.is_empty() {
-        let (count, names) = (far.len(), calibench_calibrate::few(far));
-        warnings.push(format!("{count} points take no part, since their rays are as good as parallel: {names}"));
+    let (far, disputed) = (&calibration.prepared.far, &calibration.prepared.disputed);
+    for (points, why) in [(far, "their rays are as good as parallel"), (disputed, "the last two of their rays do not meet")] {
+        if !points.is_empty() {
+            warnings.push(format!("{} points take no part, since {why}: {}", points.len(), calibench_calibrate::few(points)));
+        }
     }
     let absent = calibration.prepared.left_out.len();
-    if absent > 0 && far.is_empty() {
+    if absent > 0 && far.is_empty() && disputed.is_empty() {
         warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
     }
     warnings

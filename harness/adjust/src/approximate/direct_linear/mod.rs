@@ -5,7 +5,7 @@ use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, SMatrix, SVector, Vector3, Vector4};
 
 use super::ApproximateError;
-use super::consensus::{Search, others, search};
+use super::consensus::{Search, each, others, search};
 use super::error::at_least;
 use super::interior::interior_from_data_sheet;
 use super::least_squares::{Normal, minimise};
@@ -69,7 +69,7 @@ pub fn direct_linear(
     let refine = |_: &Start, chosen: &[usize]| fit(&linear(&of(chosen), &blank).ok()?, &of(chosen)).map(|(start, _)| start);
     // A critical set of points is worth its own name.
     linear(control, &blank).map(|_| ()).or_else(|error| if error == ApproximateError::NoSolution { Ok(()) } else { Err(error) })?;
-    let (start, agreeing) = search(control.len(), NEEDED, 2, against, propose, distance, refine)?;
+    let (start, agreeing) = search(control.len(), NEEDED, 2, against, propose, each(distance), refine)?;
     fitted(&start, control, &agreeing)
 }
 

@@ -5,7 +5,7 @@ use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, SVector, Vector3};
 
 use super::ApproximateError;
-use super::consensus::{Search, others, search};
+use super::consensus::{Search, each, others, search};
 use super::error::at_least;
 use super::least_squares::{Normal, minimise};
 
@@ -68,7 +68,7 @@ pub fn intersect(sights: &[Sight<'_>], least_angle: f64, against: Option<&Search
     let propose = |chosen: &[usize]| closest(sights, &directions, chosen, least_angle).into_iter().collect();
     let distance = |point: &Point3<f64>, index: usize| residual(&sights[index], point).map_or(f64::INFINITY, |[x, y]| x * x + y * y);
     let refine = |point: &Point3<f64>, chosen: &[usize]| fit(sights, point, chosen).map(|(point, _)| point);
-    let (start, agreeing) = search(sights.len(), 2, 2, against, propose, distance, refine)?;
+    let (start, agreeing) = search(sights.len(), 2, 2, against, propose, each(distance), refine)?;
     finish(sights, &start, &agreeing, least_angle)
 }
 

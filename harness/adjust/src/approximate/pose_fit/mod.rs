@@ -1,11 +1,15 @@
 //! The pose of least squares in the image.
 
-use calibench_model::camera::{Camera, CameraModel, Ray};
+use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix6, Point3, Rotation3, SVector, Vector3};
 
 use super::ApproximateError;
 use super::least_squares::{Normal, minimise};
+
+mod pictures;
+
+pub(super) use pictures::Pictures;
 
 /// An object point of known coordinates and its picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,23 +48,13 @@ impl FittedPose {
 ///
 /// Source: Mikhail, Bethel & McGlone 2001, section 5.3 (collinearity).
 pub fn fit_pose(camera: &Camera, start: &Pose, control: &[Control]) -> Result<FittedPose, ApproximateError> {
-    let (pose, normal) =
-        minimise(*start, |pose| pose_normal(camera, pose, control.iter()), moved_pose).ok_or(ApproximateError::NoSolution)?;
-    Ok(FittedPose { pose, squares: normal.squares, redundancy: normal.redundancy(), cofactor: normal.cofactor() })
+    fit_pictures(&Pictures::of(camera), start, control)
 }
 
-/// The rows of `control` for rotation and projection centre; `None` if a point is not pictured.
-pub(super) fn pose_normal<'a>(camera: &Camera, pose: &Pose, control: impl Iterator<Item = &'a Control>) -> Option<Normal<6>> {
-    let mut normal = Normal::new();
-    for point in control {
-        let n = pose.camera_from_world(&point.object);
-        let found = camera.slopes(Ray { x: n.x, y: n.y, z: n.z }).ok()?;
-        let misclosure = [found.point.x - point.image.x, found.point.y - point.image.y];
-        for (by_ray, misclosure) in found.by_ray.into_iter().zip(misclosure) {
-            normal.add(&pose_row(pose, &n, by_ray), misclosure);
-        }
-    }
-    Some(normal)
+/// [`fit_pose`] with a camera that is ready.
+pub(super) fn fit_pictures(camera: &Pictures<'_>, start: &Pose, control: &[Control]) -> Result<FittedPose, ApproximateError> {
+    let (pose, normal) = minimise(*start, |pose| camera.normal(pose, control), moved_pose).ok_or(ApproximateError::NoSolution)?;
+    Ok(FittedPose { pose, squares: normal.squares, redundancy: normal.redundancy(), cofactor: normal.cofactor() })
 }
 
 /// d(image coordinate) / d(rotation about the camera's axes, X0), from d / d(ray) at `n = M (X - X0)`.

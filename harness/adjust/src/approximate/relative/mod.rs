@@ -8,7 +8,7 @@ use rand::seq::index::sample;
 use rand_chacha::ChaCha8Rng;
 
 use super::ApproximateError;
-use super::consensus::{Search, others, search};
+use super::consensus::{Search, each, others, search};
 use super::coplanarity::{Motion, Pair, Slopes, nearest, normal, sampson, slopes};
 use super::error::at_least;
 use super::essential::{distances, essential_matrices, motion};
@@ -66,7 +66,7 @@ pub fn orient_relatively(
     let network = Network::of(cameras, points);
     let propose = |chosen: &[usize]| network.motions(chosen);
     let refine = |motion: &Motion, chosen: &[usize]| network.fit(motion, chosen).map(|fit| fit.motion);
-    let (start, agreeing) = search(points.len(), NEEDED, 1, against, propose, |motion, i| network.square(motion, i), refine)?;
+    let (start, agreeing) = search(points.len(), NEEDED, 1, against, propose, each(|motion, i| network.square(motion, i)), refine)?;
     let best = network.fit(&start, &agreeing).ok_or(ApproximateError::NoSolution)?;
     if network.is_rotation(&best, &agreeing) {
         return Err(ApproximateError::NoBase);

@@ -1,15 +1,17 @@
 //! Resection: the pose of a picture from control points.
 
+use std::ops::Range;
+
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
-use nalgebra::{Matrix6, Vector3};
+use nalgebra::Matrix6;
 
 use super::ApproximateError;
-use super::consensus::{Search, Tolerance, others, search};
+use super::consensus::{AT_A_TIME, Search, Tolerance, others, search};
 use super::error::at_least;
 use super::p3p::p3p;
 use super::planar::flattened_starts;
-use super::pose_fit::{Control, FittedPose, all_finite, fit_pose, rays, residual, square};
+use super::pose_fit::{Control, FittedPose, Pictures, all_finite, fit_pictures, rays, residual};
 use super::rival::is_worth;
 use super::shape::Shape;
 
@@ -49,28 +51,30 @@ pub struct Resection {
 /// [`ApproximateError::NotInCamera`], [`ApproximateError::NoSolution`], [`ApproximateError::NoConsensus`], and [`ApproximateError::Critical`] when the
 /// pose can move while the points stay where they are (the projection centre is on the cylinder through three points, say).
 ///
-/// Source: Fischler & Bolles 1981; see [`super::p3p()`] and [`fit_pose`].
+/// Source: Fischler & Bolles 1981; see [`super::p3p()`] and [`super::fit_pose`].
 pub fn resect(camera: &Camera, control: &[Control], against: Option<&Search>) -> Result<Resection, ApproximateError> {
     at_least(NEEDED, control.len(), "points", "a resection")?;
     all_finite(control)?;
     if Shape::of(control.iter().map(|point| point.object)).is_line() {
         return Err(ApproximateError::Collinear);
     }
-    let directions: Vec<Option<Vector3<f64>>> =
-        control.iter().map(|point| rays(camera, std::iter::once(point.image)).ok().map(|rays| rays[0])).collect();
-    if let (None, Some(index)) = (against, directions.iter().position(Option::is_none)) {
-        return Err(ApproximateError::NotInCamera { index });
+    if against.is_none() {
+        rays(camera, control.iter().map(|point| point.image))?;
     }
     let everything = Search { seed: 0, tolerance: Tolerance::Pixels(f64::INFINITY) };
-    let propose = |chosen: &[usize]| match [chosen[0], chosen[1], chosen[2]].map(|i| directions[i]) {
-        [Some(a), Some(b), Some(c)] => p3p(&[a, b, c], &[chosen[0], chosen[1], chosen[2]].map(|i| control[i].object)),
-        _ => Vec::new(),
+    let propose = |chosen: &[usize]| {
+        let three = [chosen[0], chosen[1], chosen[2]].map(|index| control[index]);
+        match rays(camera, three.iter().map(|point| point.image)) {
+            Ok(rays) => p3p(&[rays[0], rays[1], rays[2]], &three.map(|point| point.object)),
+            Err(_) => Vec::new(),
+        }
     };
-    let distance = |pose: &Pose, index: usize| square(camera, pose, &control[index]);
-    let refine = |pose: &Pose, chosen: &[usize]| fit_pose(camera, pose, &of(control, chosen)).ok().map(|fit| fit.pose);
-    let (pose, agreeing) = search(control.len(), 3, 2, against.unwrap_or(&everything), propose, distance, refine)?;
+    let pictures = Pictures::of(camera);
+    let squares = |pose: &Pose, range: Range<usize>, found: &mut Vec<f64>| pictures.squares(pose, &control[range], found);
+    let refine = |pose: &Pose, chosen: &[usize]| fit_pictures(&pictures, pose, &of(control, chosen)).ok().map(|fit| fit.pose);
+    let (pose, agreeing) = search(control.len(), 3, 2, against.unwrap_or(&everything), propose, squares, refine)?;
     let rivals = spread_triples(&agreeing).flat_map(|triple| propose(&triple)).collect();
-    let (best, rival) = best_of(camera, &pose, rivals, &of(control, &agreeing))?;
+    let (best, rival) = best_of(camera, &pictures, &pose, rivals, &of(control, &agreeing))?;
     let cofactor = best.cofactor.ok_or(ApproximateError::Critical { what: "the pose" })?;
     Ok(Resection {
         pose: best.pose,
@@ -97,6 +101,7 @@ fn spread_triples(agreeing: &[usize]) -> impl Iterator<Item = [usize; 3]> + '_ {
 /// plane: the best and the next.
 fn best_of(
     camera: &Camera,
+    pictures: &Pictures<'_>,
     start: &Pose,
     others: Vec<Pose>,
     chosen: &[Control],
@@ -105,13 +110,22 @@ fn best_of(
     if shape.is_line() {
         return Err(ApproximateError::Collinear);
     }
-    let first = fit_pose(camera, start, chosen)?;
-    let squares = |pose: &Pose| chosen.iter().map(|point| square(camera, pose, point)).sum::<f64>();
-    let mut starts: Vec<Pose> = others.into_iter().filter(|pose| is_worth(squares(pose), first.squares, chosen.len())).collect();
+    let first = fit_pictures(pictures, start, chosen)?;
+    // Most are hopeless after a few points.
+    let is_worth = |pose: &Pose| {
+        let (mut sum, mut squares) = (0.0, Vec::new());
+        chosen.chunks(AT_A_TIME).all(|some| {
+            squares.clear();
+            pictures.squares(pose, some, &mut squares);
+            sum += squares.iter().sum::<f64>();
+            is_worth(sum, first.squares, chosen.len())
+        })
+    };
+    let mut starts: Vec<Pose> = others.into_iter().filter(is_worth).collect();
     if shape.extents[2] < NEARLY_FLAT * shape.extents[0] {
         starts.extend(flattened_starts(camera, chosen, &shape).into_iter().flatten());
     }
-    let mut fitted: Vec<_> = starts.iter().filter_map(|start| fit_pose(camera, start, chosen).ok()).chain([first]).collect();
+    let mut fitted: Vec<_> = starts.iter().filter_map(|start| fit_pictures(pictures, start, chosen).ok()).chain([first]).collect();
     fitted.sort_by(|a, b| a.squares.total_cmp(&b.squares));
     let best = fitted[0];
     let differs = |other: &&FittedPose| (other.pose.rotation - best.pose.rotation).norm() > SAME;

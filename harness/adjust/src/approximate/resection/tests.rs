@@ -1,7 +1,10 @@
 use calibench_model::PixelPoint;
 use nalgebra::Point3;
 
+use nalgebra::Vector3;
+
 use super::*;
+use crate::approximate::fit_pose;
 use crate::approximate::tests::{Chance, apart, board, lens, pinhole};
 
 proptest::proptest! {

@@ -32,12 +32,7 @@ impl OpenCv {
     /// # Panics
     /// If `pixels` is not as long as `points`.
     pub fn project_all(&self, pose: &CameraFromWorld, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
-        assert_eq!(points.len(), pixels.len(), "a pixel for every point");
-        if self.has_five() {
-            pixels_five(&job(self, pose, region::of(self).safe), self, points, pixels);
-        } else {
-            pixels_twelve(&job(self, pose, region::of(self).safe), self, points, pixels);
-        }
+        self.prepared().project_all(pose, points, pixels);
     }
 
     /// [`Self::project_all`] with derivatives by the pose and by the parameters.
@@ -73,6 +68,20 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// As [`OpenCv::project_all`].
+    ///
+    /// # Panics
+    /// If `pixels` is not as long as `points`.
+    pub fn project_all(&self, pose: &CameraFromWorld, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
+        assert_eq!(points.len(), pixels.len(), "a pixel for every point");
+        let (camera, safe) = (&self.camera, self.safe);
+        if camera.has_five() {
+            pixels_five(&job(camera, pose, safe), camera, points, pixels);
+        } else {
+            pixels_twelve(&job(camera, pose, safe), camera, points, pixels);
+        }
+    }
+
     /// As [`OpenCv::project_all_with_derivatives`].
     ///
     /// # Panics
