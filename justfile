@@ -204,6 +204,10 @@ perf-undistort ROUNDS="3":
 perf-commands: python
     target/python/bin/python harness/python/benches/commands.py
 
+# Seconds of whole commands on points and cameras beside pycolmap and OpenCV 5, in turn (`./bootstrap peers` installs them); `--before PROGRAM` beside an earlier build
+perf-networks *OPTIONS: build
+    target/peers/bin/python harness/python/benches/networks.py {{OPTIONS}}
+
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:
     cargo bench --locked --workspace --bench rows

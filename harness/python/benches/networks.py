@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from commands import PROGRAM, spent
 
-ROUNDS = 1
+ROUNDS = 5
 SIZE = (4000, 3000)
 F = 3200.0
 LENS = (-0.05, 0.01, 1e-4, -1e-4)
