@@ -7,6 +7,8 @@ use crate::tone::{LONGEST, Tone};
 const PIXEL: f64 = 1.0 / 12.0;
 /// The smallest Gaussian blur beside a motion, px.
 const LEAST_BLUR: f64 = 0.12;
+/// Blur beyond which no operator is asked, px^2.
+const WIDEST: f64 = 16.0;
 /// A motion below this is not told from none, px.
 const LEAST_MOTION: f64 = 0.3;
 
@@ -56,6 +58,13 @@ const MOST_SHARPENING: f64 = 3.0;
 const MOST_SMOOTHING: f64 = 2.0;
 
 impl Design {
+    /// [`Self::plain`] with as much blur as photographs of use have, so that as much around the frame matters: what can picture this can picture what follows.
+    pub fn widest(views: usize) -> Self {
+        let plain = Self::plain(views);
+        let views = plain.views.iter().map(|view| ViewDesign { blur: [WIDEST, 0.0, WIDEST], ..*view }).collect();
+        Self { views, ..plain }
+    }
+
     /// So many views of usual light and blur, without noise: what says where things are.
     pub fn plain(views: usize) -> Self {
         let light = Light { exposure: 0.8, veil: 0.0, gradient: [0.0; 2] };

@@ -131,7 +131,7 @@ fn normalised_lengths_are_those_of_two_normal_numbers_however_little_checks() {
     let scale = |lengths: &[f64]| scale_of(lengths.iter().map(|length| [*length, 0.0])).unwrap();
     let beyond = |lengths: &[f64], limit: f64| lengths.iter().filter(|length| **length > limit * scale(lengths)).count() as f64;
     for limit in [1.0, 2.0, 3.0, 3.5] {
-        let expected = by_own.len() as f64 * (-0.5 * limit * limit as f64).exp();
+        let expected = by_own.len() as f64 * (-0.5_f64 * limit * limit).exp();
         let found = beyond(&by_own, limit);
         assert!((found - expected).abs() < 4.0 * expected.sqrt(), "beyond {limit}: {found} of {}, {expected} expected", by_own.len());
     }

@@ -62,7 +62,7 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// In words: a camera that folds within its frame.
     pub fn pictures_all(&self) -> Result<(), String> {
-        let scenario = self.scenario(&self.text(&Design::plain(self.scene.stations.len()))).map_err(|failure| match failure {
+        let scenario = self.scenario(&self.text(&Design::widest(self.scene.stations.len()))).map_err(|failure| match failure {
             Failure::Input(why) | Failure::Picture(why) => why,
             Failure::Gate | Failure::Doubt => String::new(),
         })?;
