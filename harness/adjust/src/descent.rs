@@ -2,6 +2,12 @@
 
 use calibench_model::stop;
 
+/// [`crate::Options::worth`] of results: a step moves the unknowns by 1e-7 of their standard deviations.
+pub const EXACT: f64 = 1e-14;
+/// [`crate::Options::worth`] where the answer needs few digits: which residuals are long, how far cameras move. Huber's weights take hundreds of steps to the other end;
+/// here the last iteration is one, too.
+pub const ROUGH: f64 = 1e-7;
+
 /// By how much the diagonal of the normal equations is raised, as a fraction of it.
 pub(crate) struct Damping {
     /// At the start.

@@ -25,6 +25,7 @@ mod state;
 mod undetermined;
 
 pub use defect::{Defect, Direction, Reason};
+pub use descent::{EXACT, ROUGH};
 pub use error::AdjustError;
 pub use network::{
     Attitude, Centre, Counts, Datum, DistanceObservation, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint,
@@ -36,7 +37,7 @@ pub use quality::{
     scale_of, snoop,
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
-pub use solution::{EXACT, Options, ROUGH, Solution, adjust};
+pub use solution::{Options, Solution, adjust};
 pub use undetermined::far_points;
 
 /// The example of the README.

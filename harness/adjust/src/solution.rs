@@ -6,6 +6,7 @@ use nalgebra::Point3;
 
 use crate::AdjustError;
 use crate::datum::{free, hold, transformed};
+use crate::descent::EXACT;
 use crate::network::{Counts, Datum, Layout, Network, NetworkError};
 use crate::normal::{Loss, Scratch};
 use crate::solve::{End, Engine, Solved};
@@ -27,12 +28,6 @@ pub struct Options {
     /// Share of the sum of squares that a step must promise for another to follow, as [`EXACT`] or [`ROUGH`].
     pub worth: f64,
 }
-
-/// [`Options::worth`] of results: a step moves the unknowns by 1e-7 of their standard deviations.
-pub const EXACT: f64 = 1e-14;
-/// [`Options::worth`] where the answer needs few digits: which residuals are long, how far cameras move. Huber's weights take hundreds of steps to the other end;
-/// here the last iteration is one, too.
-pub const ROUGH: f64 = 1e-7;
 
 impl Default for Options {
     fn default() -> Self {

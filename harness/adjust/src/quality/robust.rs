@@ -6,8 +6,9 @@ use calibench_model::upper_median;
 
 use super::snooping::Found;
 use crate::AdjustError;
+use crate::descent::ROUGH;
 use crate::network::{Network, Status};
-use crate::solution::{Options, ROUGH, Solution, adjust_from};
+use crate::solution::{Options, Solution, adjust_from};
 use crate::state::State;
 
 /// The median of the length of a vector of two normal numbers.

@@ -5,9 +5,9 @@ use nalgebra::Matrix3;
 use super::defects_by_count::counted;
 use crate::AdjustError;
 use crate::datum::hold;
+use crate::descent::EXACT;
 use crate::network::{Layout, Network};
 use crate::normal::Loss;
-use crate::solution::EXACT;
 use crate::solve::{End, Engine};
 use crate::state::State;
 

@@ -146,10 +146,15 @@ fn what_is_gross_together_is_found_under_wrong_standard_deviations() {
     for stated in [0.1, 0.5, 2.5] {
         let (network, wrong) = block(3, 0.03, stated);
         let test = Test { alpha: 1e-3 / network.observations.len() as f64, variance: Variance::Estimated, ..Test::default() };
-        let (solution, found) = snoop(&network, &Options::default(), Snooping { test, most: 300 }).unwrap();
+        let (_, found) = snoop(&network, &Options::default(), Snooping { test, most: 300 }).unwrap();
         let together = found.iter().filter(|found| found.critical == 10.0).count();
         assert!(together > wrong.len() / 3, "{stated}: {together} of {} together", wrong.len());
-        let sigma = solution.sigma0().unwrap() * stated;
-        assert!((sigma / 0.5 - 1.0).abs() < 0.06, "{stated}: {sigma} px");
+        // A point of two rays needs both of them.
+        let rays = |point: usize| network.observations.iter().filter(|o| o.point == point).count();
+        let left_out: BTreeSet<usize> = found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
+        let checked: BTreeSet<usize> = wrong.iter().copied().filter(|&index| rays(network.observations[index].point) >= 4).collect();
+        let (missed, lost) = (checked.difference(&left_out).count(), left_out.difference(&wrong).count());
+        assert!(checked.len() > 40 && missed <= checked.len() / 20, "{stated}: {missed} of {} missed", checked.len());
+        assert!(lost <= wrong.len() / 20, "{stated}: {lost} good points lost");
     }
 }
