@@ -25,7 +25,7 @@ pub struct Options {
     pub most_iterations: usize,
     /// Observations that are left out, by their index; [`Solution::residuals`] lists them as such.
     pub left_out: Vec<usize>,
-    /// Share of the sum of squares that a step must promise for another to follow, as [`EXACT`] or [`ROUGH`].
+    /// Share of the sum of squares that a step must promise for another to follow, as [`crate::EXACT`] or [`crate::ROUGH`].
     pub worth: f64,
 }
 
