@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use calibench_adjust::{Datum, Network, far_points};
 
 use crate::ended::ITERATIONS;
-use crate::{LeftOut, Prepared};
+use crate::{Calibration, LeftOut, Prepared};
 
 /// Iterations of the first round; later ones have more where points run away slowly.
 const FIRST: usize = 30;
@@ -26,21 +26,6 @@ impl Prepared {
             }
         }
         left
-    }
-
-    /// A reconstruction without the points whose last two rays do not meet: either may be wrong. `None` where there are none, or where start values were not given.
-    pub(crate) fn without_disputed_points(&self) -> Option<Self> {
-        if !self.is_given {
-            return None;
-        }
-        let (solution, found, _) = self.solution().ok()?;
-        let (seen, mut rays) = (&solution.network().observations, vec![0; solution.points().len()]);
-        seen.iter().for_each(|o| rays[o.point] += 1);
-        found.iter().filter(|found| found.left_out).for_each(|found| rays[seen[found.observation].point] -= 1);
-        let kept = found.iter().filter(|found| !found.left_out).map(|found| seen[found.observation].point);
-        let points: Vec<usize> = kept.filter(|point| rays[*point] <= 2).collect::<BTreeSet<usize>>().into_iter().collect();
-        let (without, names) = self.without(&points, "the last two rays of its point do not meet")?;
-        Some(Self { disputed: names, ..without })
     }
 
     /// The same without points of the network, and without what is seen of them, and their names; `None` if all stay. Points of distances and lengths do, so that they are
@@ -71,6 +56,23 @@ impl Prepared {
         renumber(network, &goes, &places);
         prepared.lengths.iter_mut().flatten().for_each(|point| *point = places[*point]);
         Some((prepared, names))
+    }
+}
+
+impl Calibration<'_> {
+    /// What was adjusted, a reconstruction, without the points whose last two rays do not meet: either may be wrong. `None` where there are none, or where start values
+    /// were not given.
+    pub(crate) fn without_disputed_points(&self) -> Option<Prepared> {
+        let kept: BTreeSet<usize> = self.found.iter().filter(|found| !found.left_out).map(|found| found.observation).collect();
+        if !self.prepared.is_given || kept.is_empty() {
+            return None;
+        }
+        let (seen, mut rays) = (&self.prepared.network.observations, vec![0; self.solution.points().len()]);
+        seen.iter().for_each(|o| rays[o.point] += 1);
+        self.found.iter().filter(|found| found.left_out).for_each(|found| rays[seen[found.observation].point] -= 1);
+        let points: BTreeSet<usize> = kept.into_iter().map(|kept| seen[kept].point).filter(|point| rays[*point] <= 2).collect();
+        let (without, names) = self.prepared.without(&Vec::from_iter(points), "the last two rays of its point do not meet")?;
+        Some(Prepared { disputed: names, ..without })
     }
 }
 

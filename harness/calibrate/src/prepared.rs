@@ -101,8 +101,7 @@ impl Prepared {
     pub(crate) fn without_gross_errors(&self) -> Option<Self> {
         let settings = Settings { gross: GrossErrors::Rejected(Risk::WholeSet), ..self.settings.clone() };
         if self.is_given {
-            let sought = Self { settings, ..self.clone() };
-            return Some(sought.without_disputed_points().unwrap_or(sought));
+            return Some(Self { settings, ..self.clone() });
         }
         let found = prepared(&self.survey, &settings).ok()?;
         Some(Self { unmeasured: self.unmeasured.clone(), ..found })

@@ -28,14 +28,23 @@ pub fn calibrate<T>(prepared: &Prepared, sets: &[Vec<String>], read: impl FnOnce
 /// What an adjustment gives, with weak priors where it needs them.
 fn adjusted<T>(prepared: &Prepared, read: impl FnOnce(Result<Calibration<'_>, CalibrationError>) -> T) -> T {
     if let Some(near) = prepared.without_far_points() {
-        return read(near.adjust());
+        return undisputed(near.adjust(), read);
     }
     match prepared.adjust() {
         Err(error) if error.is_undetermined() => match prepared.held_weakly() {
             Some(held) => read(held.adjust()),
             None => read(Err(error)),
         },
-        found => read(found),
+        found => undisputed(found, read),
+    }
+}
+
+/// What was found, or what is found without the points whose last two rays do not meet.
+fn undisputed<T>(found: Result<Calibration<'_>, CalibrationError>, read: impl FnOnce(Result<Calibration<'_>, CalibrationError>) -> T) -> T {
+    let without = found.as_ref().ok().and_then(Calibration::without_disputed_points);
+    match without.as_ref().map(Prepared::adjust) {
+        Some(Ok(without)) => read(Ok(without)),
+        _ => read(found),
     }
 }
 

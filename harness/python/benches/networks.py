@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from commands import PROGRAM, spent
+from commands import PEER, PROGRAM, spent
 
 ROUNDS = 5
 SIZE = (4000, 3000)
@@ -39,15 +39,14 @@ out.mkdir(exist_ok=True)
 model.write_text(str(out))
 """
 
-#: Each image for itself, every point counts; nothing is sought and no precision is stated.
-RESECT = f"""
-import csv, sys, cv2, numpy as np
-cv2.setNumThreads(int(sys.argv[1]))
-matrix = np.array([[{F}, 0, {SIZE[0] / 2 - 0.5}], [0, {F}, {SIZE[1] / 2 - 0.5}], [0, 0, 1]])
-lens = np.array({[*LENS, 0.0]})
+#: What each image sees of the control: by image object coordinates and pixels.
+SEEN = (
+    PEER
+    + """
+import csv
 with open(sys.argv[3]) as file:
-    control = {{row[0]: tuple(map(float, row[1:4])) for row in list(csv.reader(file))[1:]}}
-seen = {{}}
+    control = {row[0]: tuple(map(float, row[1:4])) for row in list(csv.reader(file))[1:]}
+seen = {}
 with open(sys.argv[2]) as file:
     rows = csv.reader(file)
     next(rows)
@@ -55,11 +54,21 @@ with open(sys.argv[2]) as file:
         objects, pixels = seen.setdefault(image, ([], []))
         objects.append(control[target])
         pixels.append((float(x), float(y)))
+"""
+)
+
+#: Each image for itself, every point counts; nothing is sought and no precision is stated.
+RESECT = (
+    SEEN
+    + f"""
+matrix = np.array([[{F}, 0, {SIZE[0] / 2 - 0.5}], [0, {F}, {SIZE[1] / 2 - 0.5}], [0, 0, 1]])
+lens = np.array({[*LENS, 0.0]})
 with open(sys.argv[4], "w") as out:
     for image, (objects, pixels) in seen.items():
         _, rotation, shift = cv2.solvePnP(np.array(objects), np.array(pixels), matrix, lens)
         print(image, *rotation.ravel(), *shift.ravel(), sep=",", file=out)
 """
+)
 
 #: A list of cameras from text to bytes.
 CONVERT = """
@@ -73,25 +82,16 @@ model.write_binary(str(out))
 """
 
 #: A board's corners by OpenCV, from a file to a file.
-BOARD = """
-import csv, sys, cv2, numpy as np
-cv2.setNumThreads(int(sys.argv[1]))
-with open(sys.argv[3]) as file:
-    control = {row[0]: tuple(map(float, row[1:4])) for row in list(csv.reader(file))[1:]}
-seen = {}
-with open(sys.argv[2]) as file:
-    rows = csv.reader(file)
-    next(rows)
-    for image, target, x, y in rows:
-        objects, pixels = seen.setdefault(image, ([], []))
-        objects.append(control[target])
-        pixels.append((float(x), float(y)))
+BOARD = (
+    SEEN
+    + """
 objects, pixels = zip(*seen.values())
 rms, camera, lens, _, _ = cv2.calibrateCamera([np.float32(o) for o in objects], [np.float32(p) for p in pixels], (4000, 3000), None, None)
 file = cv2.FileStorage(sys.argv[4], cv2.FILE_STORAGE_WRITE)
 file.write("camera_matrix", camera)
 file.write("distortion_coefficients", lens)
 """
+)
 
 
 def rotation_about(axis, angle):
