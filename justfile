@@ -236,7 +236,7 @@ schema: build
     set -euo pipefail
     {{calibench}} schema scenarios > scenarios/scenario.schema.json.new
     mv scenarios/scenario.schema.json.new scenarios/scenario.schema.json
-    for command in calibrate calibrate-rig judge judge-rig convert camera diff list measure accept task; do
+    for command in calibrate calibrate-rig calibrate-splined judge judge-rig convert camera diff list measure accept task; do
         {{calibench}} schema $command > docs/schemas/new
         version=$(python3 -c 'import json; print(json.load(open("docs/schemas/new"))["properties"]["schema"]["const"])')
         mv docs/schemas/new docs/schemas/$command-$version.schema.json

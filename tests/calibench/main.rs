@@ -62,6 +62,7 @@ mod rigs;
 mod schema;
 mod sets;
 mod several;
+mod splines;
 mod standard;
 mod store;
 mod sweeps;

@@ -21,6 +21,7 @@ mod quality;
 mod rig;
 mod solution;
 mod solve;
+mod splined;
 mod state;
 mod undetermined;
 
@@ -38,6 +39,7 @@ pub use quality::{
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
 pub use solution::{Options, Solution, adjust};
+pub use splined::{KnotPrior, SplinedFit, SplinedNetwork, SplinedPlace, SplinedQuality, SplinedSolution, adjust_splined};
 pub use undetermined::far_points;
 
 /// The example of the README.

@@ -70,6 +70,9 @@ pub enum CalibrationError {
     /// What a rig is not adjusted with, in words.
     #[error("{0}")]
     Rig(String),
+    /// What splines are not adjusted with, in words.
+    #[error("{0}")]
+    Splines(String),
     /// A datum's target that is no measured control point.
     #[error("the datum names {target}, which is no measured control point")]
     DatumTarget {

@@ -43,6 +43,7 @@ mod search;
 mod sets;
 mod settings;
 mod shape;
+pub mod splined;
 mod stages;
 mod start;
 mod stated_board;

@@ -61,6 +61,7 @@ pub use lists::{CameraList, ListWriter, Pieces, inputs_of};
 pub use published::{first_camera, published_camera};
 pub use source::LARGEST_FILE;
 use source::Source;
+pub use splines::of_splines;
 
 /// What a camera file holds.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! mrcal's splines, which no other tool holds: kept as they are, and fitted where another model is wanted.
 
-use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Ray, Splined};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, ERROR_PX, Region, Target, fit};
 use calibench_model::named_camera::{Splines, within};
+use calibench_model::{NamedCamera, PixelPoint};
 
 /// Circles about the axis over which other models are fitted where a part of the frame has no ray, as shares of the one that holds the frame.
 const CIRCLES: [f64; 8] = [0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
@@ -30,6 +30,15 @@ pub(super) fn nearest(spline: Splined) -> Result<(Camera, Splines, String), Stri
         }
     }
     Err(format!("a splined model, to which no other can be fitted{why}"))
+}
+
+/// Splines as files hold them: with the camera of another model that is nearest, and a note with its residual.
+///
+/// # Errors
+/// No other model can be fitted, in words.
+pub fn of_splines(name: &str, spline: Splined) -> Result<NamedCamera, String> {
+    let (camera, kept, note) = nearest(spline)?;
+    Ok(NamedCamera { splines: Some(Box::new(kept)), notes: vec![note], ..NamedCamera::new(name, camera) })
 }
 
 /// The radius about the axis that holds the frame, px.

@@ -139,7 +139,7 @@ pub(super) fn at_depth(ray: Ray, depth: Option<f64>) -> Ray {
 }
 
 /// Derivatives of a pixel's coordinate by a small rotation of the camera about its axes, from those by the ray.
-pub(super) fn by_turn([gx, gy, gz]: [f64; 3], ray: Ray) -> [f64; 3] {
+pub(crate) fn by_turn([gx, gy, gz]: [f64; 3], ray: Ray) -> [f64; 3] {
     [ray.y * gz - ray.z * gy, ray.z * gx - ray.x * gz, ray.x * gy - ray.y * gx]
 }
 

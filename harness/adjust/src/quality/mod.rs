@@ -13,12 +13,14 @@ mod significance;
 mod snooping;
 
 pub use covariance::{Correlation, Covariances, Variance};
+pub(crate) use frame_uncertainty::by_turn;
 pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty, frame_weight};
 pub use image_information::image_information;
 pub use lengths::Length;
 pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub(crate) use reliability::{critical, image_point};
+pub(crate) use residual_length::length;
 pub use residuals::{Residual, Use};
 pub use robust::{adjust_robustly, scale_of};
 pub use significance::{Comparison, Significance, compare};

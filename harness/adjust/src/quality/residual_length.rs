@@ -9,7 +9,7 @@ const DIRECTION_UNCHECKED: f64 = 1e-7;
 const FAR: f64 = 20.0;
 
 /// The length of white residuals `v` by their cofactors `q`, whose eigenvalues are between 0 and 1.
-pub(super) fn length(q: &Matrix2<f64>, v: Vector2<f64>) -> Option<f64> {
+pub(crate) fn length(q: &Matrix2<f64>, v: Vector2<f64>) -> Option<f64> {
     let eigen = (0.5 * (q + q.transpose())).symmetric_eigen();
     let checked = (0..2).filter(|&i| eigen.eigenvalues[i] > DIRECTION_UNCHECKED);
     let square: f64 = checked.clone().map(|i| eigen.eigenvectors.column(i).dot(&v).powi(2) / eigen.eigenvalues[i]).sum();

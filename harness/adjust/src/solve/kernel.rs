@@ -32,7 +32,7 @@ pub(crate) fn runs(coupled: &[Coupled], i: usize, mut from: usize, into: &Reduce
 macro_rules! subtract {
     ($($name:ident: $depth:expr;)*) => {
         $(#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
-        pub(super) fn $name(y: &[f64], columns: usize, own: (usize, usize), runs: &[Run], stride: usize, values: &mut [f64]) {
+        pub(crate) fn $name(y: &[f64], columns: usize, own: (usize, usize), runs: &[Run], stride: usize, values: &mut [f64]) {
             subtract_columns::<$depth>(y, columns, own, runs, stride, values);
         })*
     };

@@ -21,11 +21,13 @@ use crate::network::{ImageObservation, Layout, Network, Sight};
 use crate::normal::{Loss, Lost, Normals, Scratch, linearise};
 use crate::state::{State, Step, before};
 pub(crate) use elimination_order::{Eliminated, Kept, Ordered, Plan};
-use factor::Factor;
+pub(crate) use factor::Factor;
 pub(crate) use inverse::{Inverse, Member};
+pub(crate) use kernel::{Run, subtract_6};
 use place::Place;
-use reduced::Reduced;
+pub(crate) use reduced::Reduced;
 pub(crate) use schur::{Coupling, Schur};
+pub(crate) use small_cholesky::{backward, cholesky, forward};
 use sparse_factor::Structure;
 
 /// Sights up to which the couplings of all are kept.

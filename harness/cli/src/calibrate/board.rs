@@ -34,6 +34,11 @@ impl BoardArguments {
         self.board_file.iter()
     }
 
+    /// Whether anything is.
+    pub fn is_given(&self) -> bool {
+        self.board_file.is_some() || self.save_board.is_some() || self.board_scale.is_some() || self.print_noise.is_some()
+    }
+
     /// Where the board is written to, if it is.
     pub fn output(&self, inputs: &Inputs) -> Result<Option<OutputFile>, Failure> {
         output::table("--save-board", self.save_board.as_deref(), inputs)

@@ -17,9 +17,13 @@ use crate::failure::Failure;
 /// Writes the cameras with their covariances: in the convention asked for, or in the first format that holds them as they are and has the file's ending.
 /// Several go into one file if its format holds several, or else into a file each. Of a convention that does not hold them they are written beside, as they are.
 pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str>) -> Result<(), Failure> {
-    let path = output.path();
     let sources = (0..calibration.cameras()).map(|camera| calibration.named_camera(camera).map_err(Failure::Input));
-    let sources = sources.collect::<Result<Vec<_>, Failure>>()?;
+    write_named(output, &sources.collect::<Result<Vec<_>, Failure>>()?, to)
+}
+
+/// As [`write`], of cameras as files hold them.
+pub fn write_named(output: &OutputFile, sources: &[NamedCamera], to: Option<&str>) -> Result<(), Failure> {
+    let path = output.path();
     let made = sources.iter().map(|source| for_file(path, source, to)).collect::<Result<Vec<_>, _>>();
     let made = made.map_err(|error| {
         if output.is_file() {

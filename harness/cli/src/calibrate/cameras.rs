@@ -28,7 +28,7 @@ pub struct Cameras {
     /// Pixel pitch, um, for models in mm
     #[arg(long, value_name = "[CAMERA=]UM", value_parser = |text: &str| For::parse(text, positive), allow_hyphen_values = true)]
     pitch: Vec<For<f64>>,
-    /// Camera model: photogrammetric, opencv5, metashape and others [default: photogrammetric with --pitch, or else opencv5]
+    /// Camera model: photogrammetric, opencv5, metashape and others, or mrcal's splines, as in splined:30x20:170:3 (columns and rows of control points, horizontal field of view in degrees, order 2 or 3) [default: photogrammetric with --pitch, or else opencv5]
     #[arg(long, value_name = "[CAMERA=]MODEL", value_parser = |text: &str| For::parse(text, model))]
     model: Vec<For<String>>,
     /// Parameters to solve for, as in c,x0,y0,k1, or none; the others keep their start values [default: what the model usually needs]
@@ -120,6 +120,16 @@ impl Cameras {
     /// The parameters that all cameras together are solved for.
     pub fn common_solve(&self) -> Option<Vec<String>> {
         self.solve.iter().find(|solve| solve.camera.is_none()).map(|solve| solve.value.clone())
+    }
+
+    /// The models that are named, of whichever camera.
+    pub fn models(&self) -> impl Iterator<Item = &str> {
+        self.model.iter().map(|model| model.value.as_str())
+    }
+
+    /// Whether parameters were observed.
+    pub const fn has_priors(&self) -> bool {
+        !self.priors.is_empty()
     }
 
     /// A camera of a file for images of `size`, of another size where the user says that it is the same camera.

@@ -35,6 +35,7 @@ pub mod certificate;
 mod photographs;
 mod reconstruction;
 mod rig;
+mod splined;
 
 use board::BoardArguments;
 use cameras::Cameras;
@@ -85,6 +86,8 @@ pub struct Calibrate {
     cameras: Cameras,
     #[command(flatten)]
     rig: rig::RigArguments,
+    #[command(flatten)]
+    splined: splined::SplinedArguments,
     #[command(flatten)]
     reconstruction: reconstruction::ReconstructionArguments,
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, free:A,B,C,... (these targets stay closest to their start values), or minimal:A,B,C,D,E (X and Y of two, Z of three) [default: control; without --control free]
@@ -172,6 +175,10 @@ impl Calibrate {
     pub fn run(mut self, context: &Context<'_>) -> Result<(), Failure> {
         let taken = self.taken(context)?;
         self.photos.clone_from(&taken.photos);
+        if let Some(grid) = self.spline_grid()? {
+            return self.run_splined(grid, &taken.doubts, context);
+        }
+        self.splined.without_splines()?;
         if self.rig.is_asked() {
             return self.run_rig(context);
         }

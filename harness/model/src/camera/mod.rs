@@ -34,6 +34,7 @@ mod ray;
 mod reframe;
 pub mod six_prism_fisheye;
 pub mod splined;
+mod splined_image;
 pub mod tool_conventions;
 mod wide_angle;
 mod without_ray;
@@ -70,6 +71,7 @@ pub use ray::Ray;
 pub use reframe::{Reframe, Resampling, Turn};
 pub use six_prism_fisheye::SixPrismFisheye;
 pub use splined::Splined;
+pub use splined_image::SplinedImage;
 pub use without_ray::without_ray;
 
 /// Columns and rows of a camera's images.

@@ -40,15 +40,15 @@ const WIDEST: f64 = 11.34;
 const PLACES: usize = 400;
 
 /// Values and derivatives of the basis at a grid coordinate, and the first control point that they belong to.
-struct Basis {
-    first: usize,
-    value: [f64; 4],
+pub(super) struct Basis {
+    pub(super) first: usize,
+    pub(super) value: [f64; 4],
     slope: [f64; 4],
 }
 
 impl Basis {
     /// Where `at` is no number, values and slopes are none either.
-    fn new(order: usize, at: f64, count: usize) -> Self {
+    pub(super) fn new(order: usize, at: f64, count: usize) -> Self {
         // A cast takes what is no number to 0.
         let before = |place: f64| (place as usize).saturating_sub(1);
         if order == 2 {
@@ -88,7 +88,8 @@ impl Splined {
         Ok(())
     }
 
-    fn per_u(&self) -> f64 {
+    /// Control points to a unit of u.
+    pub(super) fn per_u(&self) -> f64 {
         (self.columns - self.order) as f64 / (4.0 * (self.fov_x_deg.to_radians() / 4.0).tan())
     }
 
@@ -104,7 +105,7 @@ impl Splined {
         within(at.x, self.size.width) && within(at.y, self.size.height)
     }
 
-    fn pixel(&self, [x, y]: [f64; 2]) -> PixelPoint {
+    pub(super) fn pixel(&self, [x, y]: [f64; 2]) -> PixelPoint {
         let [fx, fy, cx, cy] = self.core;
         PixelPoint::new(fx * x + cx, fy * y + cy)
     }
@@ -132,7 +133,7 @@ impl PlaneMap for Splined {
 }
 
 /// The stereographic u (right, down) of a ray, with its derivatives by the ray's own axes.
-fn stereographic(ray: Ray) -> Result<([f64; 2], [[f64; 3]; 2]), NoCounterpart> {
+pub(super) fn stereographic(ray: Ray) -> Result<([f64; 2], [[f64; 3]; 2]), NoCounterpart> {
     let [x, y, z] = [ray.x, -ray.y, -ray.z];
     let d = (x * x + y * y + z * z).sqrt();
     let under = d + z;

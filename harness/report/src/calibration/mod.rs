@@ -18,6 +18,8 @@ mod rig;
 mod rig_stands;
 mod scale;
 mod sets_page;
+mod splined;
+mod splined_page;
 mod tables;
 mod uncertainty;
 mod warnings;
@@ -31,6 +33,8 @@ pub use page::{summary, write_report};
 pub use ply::scene_ply;
 pub use rig::rig_summary;
 pub use rig_stands::rig_stands;
+pub use splined::splined_summary;
+pub use splined_page::write_splined_report;
 pub use uncertainty::FrameUncertainty;
 pub use warnings::warnings;
 

@@ -17,6 +17,7 @@ mod next;
 mod rig;
 mod rig_stands;
 mod schema;
+mod splined;
 mod task;
 mod text;
 mod twin;
@@ -39,6 +40,7 @@ pub use measurement::{MeasurementAnswer, MeasurementCounts};
 pub use rig::RigAnswer;
 pub use rig_stands::RigStandsAnswer;
 pub use schema::{COMMANDS, schema_of};
+pub use splined::SplinedAnswer;
 pub use task::TaskAnswer;
 pub use twin::{TwinAnswer, TwinCase, TwinCaseOperator, TwinCurves, TwinLook, TwinOperator, TwinPart};
 

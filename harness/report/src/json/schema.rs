@@ -6,13 +6,14 @@ use serde_json::{Value, json};
 
 use super::{
     AcceptanceAnswer, Answer, CalibrationAnswer, CameraFileAnswer, ConversionAnswer, DifferenceAnswer, JudgementAnswer, ListAnswer,
-    MeasurementAnswer, RigAnswer, RigStandsAnswer, TaskAnswer, TwinAnswer,
+    MeasurementAnswer, RigAnswer, RigStandsAnswer, SplinedAnswer, TaskAnswer, TwinAnswer,
 };
 
 /// Commands that answer with `--json`.
-pub const COMMANDS: [&str; 12] = [
+pub const COMMANDS: [&str; 13] = [
     CalibrationAnswer::COMMAND,
     RigAnswer::COMMAND,
+    SplinedAnswer::COMMAND,
     JudgementAnswer::COMMAND,
     RigStandsAnswer::COMMAND,
     ConversionAnswer::COMMAND,
@@ -33,6 +34,7 @@ pub fn schema_of(command: &str) -> Option<Value> {
     Some(match command {
         CalibrationAnswer::COMMAND => of::<CalibrationAnswer>(),
         RigAnswer::COMMAND => of::<RigAnswer>(),
+        SplinedAnswer::COMMAND => of::<SplinedAnswer>(),
         JudgementAnswer::COMMAND => of::<JudgementAnswer>(),
         RigStandsAnswer::COMMAND => of::<RigStandsAnswer>(),
         ConversionAnswer::COMMAND => of::<ConversionAnswer>(),
