@@ -26,7 +26,7 @@ fn every_shell_completes_what_the_help_shows() {
         String::from_utf8(done.stdout).unwrap().lines().map(str::to_owned).collect::<Vec<_>>()
     };
     assert_eq!(completed(&["calibench", "cali"]), ["calibrate"]);
-    assert_eq!(completed(&["calibench", "calibrate", "--board-s"]), ["--board-shape"]);
+    assert_eq!(completed(&["calibench", "calibrate", "--board-s"]), ["--board-scale", "--board-shape"]);
     assert_eq!(completed(&["calibench", "convert", "--to", "kal"]), ["kalibr"]);
     assert!(completed(&["calibench", "measure", "-m", "parametric_c"]).contains(&"parametric_corner".to_owned()));
     assert!(completed(&["calibench", "schema", "j"]).contains(&"judge".to_owned()));

@@ -114,9 +114,9 @@ fn files_of_other_boards_and_other_mistakes_are_refused() {
     assert!(with("column.csv", &text.replacen("sZ", "sW", 1)).contains("column.csv:1, column `sW`: unknown"));
     assert!(with("infinite.csv", &text.replacen(",0,0,0,12", ",0,0,inf,12", 1)).contains("expected a finite number"));
     let other = refused(folder.path(), &["calibrate", "-q", "later", "--board", "9x6:40", "--board-file", "board.csv"]);
-    assert!(other.contains("from where the board has it, and its next corner is 40 away"), "{other}");
+    assert!(other.contains("from where the board has it, and its next corner is 40.0 away"), "{other}");
     let judge = refused(folder.path(), &["judge", "-q", "later", "--board", "9x6:40", "--board-file", "board.csv"]);
-    assert!(judge.contains("board.csv: `") && judge.contains("next corner is 40 away"), "{judge}");
+    assert!(judge.contains("board.csv: `") && judge.contains("next corner is 40.0 away"), "{judge}");
     for (arguments, expected) in [
         (&["--save-board", "b.csv", "--board-shape", "bent"][..], "every corner is free when a board is measured"),
         (&["--save-board", "b.txt"], "--save-board b.txt: a table ends in .csv"),

@@ -80,7 +80,7 @@ fn a_rig_is_judged_against_its_file() {
         (output.status.code(), stdout(&output), stderr(&output))
     };
     let (code, text, error) = judged("rig/stereo-left-right.yml", &[]);
-    assert!(code == Some(0) && text.contains("right stands as it did against left, up to 1 px"), "{code:?} {text}{error}");
+    assert!(code == Some(0) && text.contains("right stands as it did against left, up to 1.00 px"), "{code:?} {text}{error}");
     let chain = std::fs::read_to_string(folder.path().join("rig/camchain.yaml")).unwrap();
     let x = chain.lines().find(|line| line.contains("- [") && line.contains("0.9")).unwrap_or_else(|| panic!("{chain}"));
     let last: f64 = x.rsplit_once(',').unwrap().1.trim_end_matches([']', ' ']).trim().parse().unwrap();

@@ -122,7 +122,8 @@ fn gross_errors_are_left_out_by_name() {
     let (code, found) = answer(folder.path(), &EXAMPLE);
     assert_eq!((code, found["rejected"].as_array().unwrap().len()), (Some(0), 2), "{}", found["rejected"]);
     let (code, kept) = answer(folder.path(), &[&EXAMPLE[..], &["--plain"]].concat());
-    assert_eq!((code, &kept["doubted"][0]["subject"]), (Some(3), &Value::from("gross-errors")), "{}", kept["doubts"]);
+    let is_said = kept["doubted"].as_array().unwrap().iter().any(|doubted| doubted["subject"] == "gross-errors");
+    assert!(code == Some(3) && is_said, "{}", kept["doubts"]);
     assert!(kept["rejected"].as_array().unwrap().is_empty() && number(&kept["rms_px"]) > number(&found["rms_px"]));
 }
 
