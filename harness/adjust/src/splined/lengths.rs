@@ -26,7 +26,7 @@ pub(super) fn lengths(frame: &Frame<'_>, state: &SplinedState, solved: &Solved, 
         for (k, sight) in range.clone().enumerate() {
             let Ok(row) = SightRow::of(frame, state, (index, sight)) else { return found };
             let white = |by: [f64; 2]| precision(sight).whitened(by);
-            for axis in 0..2 {
+            for (axis, into) in poses[k].iter_mut().enumerate() {
                 let mut pose = row.pose.map(|by| white(by)[axis]);
                 forward(l, &mut pose);
                 let mut column = kept.column_mut(2 * k + axis);
@@ -38,7 +38,7 @@ pub(super) fn lengths(frame: &Frame<'_>, state: &SplinedState, solved: &Solved, 
                         column[place] += white(by)[axis];
                     }
                 }
-                poses[k][axis] = pose;
+                *into = pose;
             }
         }
         let spread = &own * &kept;
