@@ -1,5 +1,6 @@
 //! `calibrate --model splined:...`: mrcal's splines from zero control points, of an example with a dent that no formula has and of a board that others adjusted.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use calibench_cameras::read_camera;
@@ -103,6 +104,43 @@ fn a_dent_is_found_from_zero_control_points() {
     }
 }
 
+/// A core that is solved for is another name for nearly the same lens, at a lower cost: the prior pulls less.
+#[test]
+fn the_core_is_solved_for() {
+    let folder = example();
+    let (_, held) = answer(folder.path(), &[&EXAMPLE[..], &["-o", "held.cameramodel"]].concat());
+    let (code, free) = answer(folder.path(), &[&EXAMPLE[..], &["--solve", "fx,fy,cx,cy", "-o", "free.cameramodel"]].concat());
+    assert_eq!((code, number(&free["unknowns"]) - number(&held["unknowns"])), (Some(0), 4.0), "{}", free["doubts"]);
+    let total = |found: &Value| number(&found["cost"]) + number(&found["cost_of_prior"]);
+    assert!(
+        total(&free) < total(&held) && number(&free["cost_of_prior"]) < number(&held["cost_of_prior"]),
+        "{} {}",
+        total(&free),
+        total(&held)
+    );
+    let sigmas = |found: &Value| found["camera"]["core_sigmas"].as_array().unwrap().clone();
+    assert!(sigmas(&held).iter().all(Value::is_null), "{:?}", sigmas(&held));
+    let places: Vec<[f64; 2]> = free["uncertainty"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|place| place["held"] == true)
+        .map(|place| [number(&place["x"]), number(&place["y"])])
+        .collect();
+    let rms = |name: &str| {
+        let camera = read_camera(&folder.path().join(name)).unwrap().cameras.remove(0).splines.unwrap().model;
+        let errors = errors(&camera, &image_points(folder.path()), &places);
+        (camera.core, (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt())
+    };
+    let ((core_held, error_held), (core_free, error_free)) = (rms("held.cameramodel"), rms("free.cameramodel"));
+    assert!((error_free / error_held - 1.0).abs() < 0.1, "{error_free} {error_held}");
+    // The prior alone tells the core from control points, and not well.
+    for (i, sigma) in sigmas(&free).iter().enumerate() {
+        let (sigma, moved) = (number(sigma), core_free[i] - core_held[i]);
+        assert!(sigma > 0.5 && moved != 0.0, "{i}: {sigma} {moved}");
+    }
+}
+
 #[test]
 fn gross_errors_are_left_out_by_name() {
     let folder = example();
@@ -127,6 +165,29 @@ fn gross_errors_are_left_out_by_name() {
     assert!(kept["rejected"].as_array().unwrap().is_empty() && number(&kept["rms_px"]) > number(&found["rms_px"]));
 }
 
+/// Each of many that are wrong by 1 to 4 px is left out, those of one image and those at the rim too, and no other.
+#[test]
+fn many_gross_errors_hide_none_and_spoil_none() {
+    let folder = example();
+    let text = std::fs::read_to_string(folder.path().join("points.csv")).unwrap();
+    let mut wrong = BTreeSet::new();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for (number, line) in lines.iter_mut().enumerate().skip(1).filter(|(number, _)| number % 97 < 2) {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let (axis, by) = (2 + number % 2, if number % 3 == 0 { -1.0 } else { 1.0 } * (1.0 + 0.1 * (number % 31) as f64));
+        cells[axis] = (cells[axis].parse::<f64>().unwrap() + by).to_string();
+        wrong.insert((cells[0].clone(), cells[1].clone()));
+        *line = cells.join(",");
+    }
+    std::fs::write(folder.path().join("points.csv"), lines.join("\n")).unwrap();
+    let (code, found) = answer(folder.path(), &EXAMPLE);
+    let name = |one: &Value| (one["image"].as_str().unwrap().to_owned(), one["target"].as_str().unwrap().to_owned());
+    let rejected: BTreeSet<(String, String)> = found["rejected"].as_array().unwrap().iter().map(name).collect();
+    assert!(wrong.len() > 50 && rejected == wrong, "{} {:?}", wrong.len(), rejected.symmetric_difference(&wrong));
+    // Two in a hundred are worth a doubt.
+    assert_eq!((code, found["doubted"].as_array().unwrap().len()), (Some(3), 1), "{}", found["doubts"]);
+}
+
 #[test]
 fn what_splines_do_not_go_with_is_said() {
     let folder = example();
@@ -144,7 +205,8 @@ fn what_splines_do_not_go_with_is_said() {
         (&["--model", "splined:14x11:120:3", "--compare", "fx"], "--compare is not there for splines"),
         (&["--model", "splined:14x11:120:3", "--hold", "k1=3"], "no `k1`"),
         (&["--model", "splined:14x11:120:3", "--hold", "fx=0"], "positive"),
-        (&["--model", "splined:14x11:120:3", "--solve", "fx"], "the core is held"),
+        (&["--model", "splined:14x11:120:3", "--solve", "k1"], "no `k1`"),
+        (&["--model", "splined:14x11:120:3", "--solve", "fx", "--hold", "fx=600"], "fx is held"),
         (&["--model", "splined:14x11:120:3", "--board-shape", "free"], "control that is fixed"),
         (&["--hold", "fx=3"], "--hold: holds the core of splines"),
     ] {
@@ -201,4 +263,13 @@ fn a_board_of_186_images_is_adjusted_as_mrcal_does() {
     }
     // A part of the frame has no image points: what is known there is the prior.
     assert!(number(&found["share_unheld"]) > 0.0);
+    // With the core free mrcal stops before its minimum is reached.
+    let (_, free) = answer(folder.path(), &[&model[..], &["--solve", "fx,fy,cx,cy"]].concat());
+    let core_free = of("core_free");
+    let (own, other) = (
+        number(&free["cost"]) + number(&free["cost_of_prior"]),
+        number(&core_free["cost_boards"]) + number(&core_free["cost_regularisation"]),
+    );
+    assert!(own < other && own > other - 0.25, "{own} {other}");
+    assert_eq!(number(&free["unknowns"]), number(&core_free["states"]));
 }

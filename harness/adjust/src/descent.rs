@@ -24,6 +24,9 @@ pub(crate) struct Damping {
     pub(crate) factors: (f64, f64),
 }
 
+/// No damping, unless it is needed.
+pub(crate) const UNDAMPED: Damping = Damping { first: 0.0, again: 1e-6, least: 1e-9, rest: 0.0, most: 1e12, factors: (0.1, 10.0) };
+
 impl Damping {
     fn after(&self, damping: f64, lower: bool) -> f64 {
         match lower {

@@ -7,7 +7,7 @@ use crate::{Answer, Task};
 pub struct Calibrated {
     /// What was answered.
     pub answer: Answer,
-    /// From the question to the answer, s.
+    /// Processor's time from the question to the answer, s.
     pub seconds: f64,
     /// The most memory that its process has had in use so far, MB; `None` where that is not known, or where it has none of its own.
     pub peak_mb: Option<f64>,

@@ -1,7 +1,5 @@
 //! Our own calibration, in the configurations that users choose among.
 
-use std::time::Instant;
-
 use calibench_adjust::Use;
 use calibench_calibrate::{BoardShape, Calibration, GrossErrors, MODELS, Optics, Risk, Settings, calibrate, prepare};
 use calibench_model::camera::{Camera, OpenCv};
@@ -114,14 +112,20 @@ impl Calibrator for Own {
     }
 
     fn calibrate(&self, task: &Task) -> Result<Calibrated, String> {
-        // Every system has one thread. Who waits for it does nothing else meanwhile, as with a program: its time would be taken for that of the calibration.
+        // Every system has one thread, whose time is that of the calibration.
         let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
         let timed = || {
-            let begun = Instant::now();
-            (self.answer(task), begun.elapsed().as_secs_f64())
+            let begun = thread_seconds();
+            (self.answer(task), thread_seconds() - begun)
         };
         let done = std::thread::scope(|scope| scope.spawn(|| alone.install(timed)).join());
         let (answer, seconds) = done.map_err(|_| "it panicked".to_owned())?;
         Ok(Calibrated { answer, seconds, peak_mb: None })
     }
+}
+
+/// The processor's time of this thread so far, s.
+fn thread_seconds() -> f64 {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
 }

@@ -40,8 +40,17 @@ pub fn camera_for(path: &Path, size: Option<ImageSize>, is_same: bool) -> Result
     Ok(size.map_or_else(|| Ok(named.clone()), |size| for_images(path, &named, size, is_same))?.camera)
 }
 
-/// The first camera of a file.
+/// The first camera of a file, of no other model than it says.
 pub fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
+    let first = first_or_splines(path, options)?;
+    match first.doubt() {
+        Some(doubt) => Err(Failure::input(format!("{}: {doubt}", path.display()))),
+        None => Ok(first),
+    }
+}
+
+/// The same for those who take splines as they are: no other camera need be near them.
+pub fn first_or_splines(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
     let (cameras, count) = match CameraList::open(path, options)? {
         Some(list) => (list.pieces(1)?.next().transpose()?.unwrap_or_default(), list.len()),
         None => {
@@ -53,9 +62,5 @@ pub fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure>
     if count > 1 {
         say!("{}: the first of {count} cameras", path.display());
     }
-    let first = cameras.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))?;
-    if let Some(doubt) = first.doubt() {
-        return Err(Failure::input(format!("{}: {doubt}", path.display())));
-    }
-    Ok(first)
+    cameras.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
 }

@@ -108,7 +108,7 @@ pub enum Unanswered {
 pub struct Said {
     /// The line.
     pub line: String,
-    /// From the question to the answer, s.
+    /// Processor's time from the question to the answer, s: of all its threads, whatever else the machine does. Where the system does not tell, time by the clock.
     pub seconds: f64,
     /// The most memory that its process has had in use so far, MB; `None` where the system does not tell.
     pub peak_mb: Option<f64>,
@@ -151,7 +151,7 @@ impl CalibratorProgram {
         let started = self.program.greeted(&calibrations_greeting());
         let mut started = started.map_err(|fault| Unanswered::Unavailable(short(&fault.message)))?;
         started.asked += 1;
-        let (number, begun) = (started.asked, Instant::now());
+        let (number, begun, taken) = (started.asked, Instant::now(), started.process.processor_seconds());
         let line = started.process.ask(&[&request(number)], self.program.limit(), LONGEST).map_err(|fault| {
             let why = match fault.rejection {
                 Rejection::TooSlow => format!("no answer within {} s", self.declaration.program.seconds),
@@ -159,7 +159,9 @@ impl CalibratorProgram {
             };
             Unanswered::Failed(why)
         })?;
-        let said = Said { line, seconds: begun.elapsed().as_secs_f64(), peak_mb: started.process.peak_mb() };
+        let elapsed = begun.elapsed().as_secs_f64();
+        let taken = started.process.processor_seconds().zip(taken).map(|(after, before)| after - before);
+        let said = Said { line, seconds: taken.unwrap_or(elapsed), peak_mb: started.process.peak_mb() };
         self.program.keep_greeted(calibrations_greeting(), started);
         Ok((number, said))
     }

@@ -253,6 +253,11 @@ impl Process {
         line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok().map(|kilobytes| kilobytes * 1.024e-3)
     }
 
+    /// The processor's time that it and what it started have taken so far, s; `None` where the system does not tell.
+    pub fn processor_seconds(&self) -> Option<f64> {
+        descendants::processor_seconds(Pid::from_child(&self.child))
+    }
+
     /// The last line that it said on standard error.
     fn said(&self) -> String {
         let text = String::from_utf8_lossy(&self.tail);

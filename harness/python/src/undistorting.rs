@@ -9,7 +9,7 @@ use pyo3::types::{PyList, PySequence, PyTuple};
 
 use crate::arrays::{of_positions, positions};
 use crate::camera::Camera;
-use crate::error::{camera as refused, input};
+use crate::error::input;
 use crate::pool::released;
 
 /// What a picture may be.
@@ -18,15 +18,12 @@ const EXPECTED: &str =
 
 /// The views of what is given and of what is made.
 fn views(camera: &Camera, to: &Bound<'_, PyAny>, frame: &str, scale: f64, redistort: bool) -> PyResult<(View, View)> {
-    if let Some(doubt) = camera.named.doubt() {
-        return Err(refused(doubt));
-    }
-    let own = camera.named.camera;
+    let own = View::of(&camera.named);
     let new = if let Ok(other) = to.cast::<Camera>() {
         if frame != "keep" || scale != 1.0 {
             return Err(input("to: a camera has its own frame; expected frame=\"keep\" and scale=1"));
         }
-        View::Camera(other.get().named.camera)
+        View::of(&other.get().named)
     } else {
         let target = match to.extract::<String>().as_deref() {
             Ok("pinhole") => Target::Pinhole,
@@ -44,7 +41,7 @@ fn views(camera: &Camera, to: &Bound<'_, PyAny>, frame: &str, scale: f64, redist
         }
         framed(&own, target, frame, scale).map_err(input)?
     };
-    Ok(if redistort { (new, View::Camera(own)) } else { (View::Camera(own), new) })
+    Ok(if redistort { (new, own) } else { (own, new) })
 }
 
 /// Pictures as another camera would have taken them: as `calibench undistort` makes them.
@@ -64,6 +61,8 @@ pub fn undistort<'py>(
     let kernel: Kernel = kernel.parse().map_err(|error| input(format!("kernel: {error}")))?;
     let to = to.map_or_else(|| "pinhole".into_bound_py_any(py), Ok)?;
     let (from, made) = views(camera, &to, frame, scale, redistort)?;
+    // What is made has the camera of a file, or one of its own.
+    let of_file = if redistort { Some(camera.named.clone()) } else { to.cast::<Camera>().ok().map(|other| other.get().named.clone()) };
     let map = released(py, || Map::between(&from, &made))?;
     if map.covered() == 0 {
         return Err(input(calibench_undistort::FrameError::Nothing));
@@ -81,9 +80,10 @@ pub fn undistort<'py>(
     let (width, height) = (map.size().width as usize, map.size().height as usize);
     let mask: Vec<bool> = released(py, || map.mask(0..height))?.into_iter().map(|level| level > 0).collect();
     let mask = mask.into_pyarray(py).reshape([height, width])?;
-    let new = match made {
-        View::Camera(camera) => Camera::new(NamedCamera::new("", camera)).into_bound_py_any(py)?,
-        View::Equirectangular(_) => py.None().into_bound(py),
+    let new = match (made, of_file) {
+        (View::Splined(_), Some(named)) => Camera::new(named).into_bound_py_any(py)?,
+        (View::Camera(camera), _) => Camera::new(NamedCamera::new("", camera)).into_bound_py_any(py)?,
+        (View::Splined(_) | View::Equirectangular(_), _) => py.None().into_bound(py),
     };
     PyTuple::new(py, [pictures, new, mask.into_any()])
 }

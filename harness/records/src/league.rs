@@ -52,7 +52,7 @@ pub struct Answered {
     pub left_out: usize,
     /// Whether it was wrong and said nothing.
     pub silent: bool,
-    /// From question to answer, s.
+    /// Processor's time from question to answer, s.
     pub seconds: Option<f64>,
     /// The most memory in use so far, MB.
     pub peak_mb: Option<f64>,

@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut distortion = [0.0; 14];
     distortion[..4].copy_from_slice(&[-0.22, 0.06, 0.0006, -0.0004]);
     let camera: Camera = OpenCv { size: SIZE, fx: 800.0, fy: 800.0, cx: 492.3, cy: 384.1, distortion, coefficients: 5 }.into();
-    let (from, to) = (View::Camera(camera), framed(&camera, Target::Pinhole, Frame::Keep, 1.0)?);
+    let (from, to) = (View::Camera(camera), framed(&View::Camera(camera), Target::Pinhole, Frame::Keep, 1.0)?);
     let map = Map::between(&from, &to);
     for name in METHODS {
         println!("\n| `{name}` | {} |", BLURS.map(|blur| format!("{blur} px")).join(" | "));

@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut distortion = [0.0; 14];
     distortion[..4].copy_from_slice(&[-0.2, 0.08, 0.0005, -0.0003]);
     let camera: Camera = OpenCv { size: SIZE, fx: 3000.0, fy: 3000.0, cx: 1990.0, cy: 1510.0, distortion, coefficients: 5 }.into();
-    let to = framed(&camera, Target::Pinhole, Frame::Keep, 1.0)?;
+    let to = framed(&View::Camera(camera), Target::Pinhole, Frame::Keep, 1.0)?;
     let begin = seconds();
     let map = Map::between(&View::Camera(camera), &to);
     println!("map,,,{:.1}", (seconds() - begin) * 1e3);

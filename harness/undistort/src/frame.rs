@@ -1,7 +1,7 @@
 //! Which part of what a camera sees the new picture holds.
 
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, ImageSize, NoCounterpart, Ray};
+use calibench_model::camera::{ImageSize, NoCounterpart, Ray};
 use thiserror::Error;
 
 use crate::view::{Equirectangular, View};
@@ -65,28 +65,25 @@ pub enum FrameError {
     Nothing,
 }
 
-/// The view of a new picture of what `camera` sees, `scale` times as large as the photograph on the axis.
+/// The view of a new picture of what `photograph` shows, `scale` times as large as the photograph on the axis.
 ///
 /// # Errors
 /// No ray along the axis, a plane that cannot hold all, a picture without pixels or with too many.
-pub fn framed(camera: &Camera, target: Target, frame: Frame, scale: f64) -> Result<View, FrameError> {
-    let (axis, stated) = (camera.slopes(Ray::from_tangent(0.0, 0.0))?, camera.size());
+pub fn framed(photograph: &View, target: Target, frame: Frame, scale: f64) -> Result<View, FrameError> {
+    let ((axis, focal), stated) = (photograph.axis()?, photograph.size());
     let scaled = |at: PixelPoint| {
         let mut corner = at.to_corner();
         (corner.x, corner.y) = (corner.x * scale, corner.y * scale);
         corner.to_pixel()
     };
     let size = [stated.width, stated.height].map(|side| (f64::from(side) * scale).round());
-    // By the ray's components, of which y points up and the image down.
-    let focal = [axis.by_ray[0][0] * scale, -axis.by_ray[1][1] * scale];
-    let keep = Plan { target, focal, axis: scaled(axis.point), size };
-    let photograph = View::Camera(*camera);
+    let keep = Plan { target, focal: focal.map(|focal| focal * scale), axis: scaled(axis), size };
     match frame {
         Frame::Keep => keep.view(),
-        Frame::All => keep.around(&photograph, &seen(camera)?)?.view(),
+        Frame::All => keep.around(photograph, &seen(photograph)?)?.view(),
         Frame::Crop => {
-            let all = keep.around(&photograph, &seen(camera)?).unwrap_or_else(|_| keep.widened());
-            all.cropped(&photograph)
+            let all = keep.around(photograph, &seen(photograph)?).unwrap_or_else(|_| keep.widened());
+            all.cropped(photograph)
         }
     }
 }
@@ -200,8 +197,8 @@ impl Plan {
 }
 
 /// The rays of what a photograph shows: of its border, to the outer edges, and within it.
-fn seen(camera: &Camera) -> Result<Vec<Ray>, FrameError> {
-    let ImageSize { width, height } = camera.size();
+fn seen(photograph: &View) -> Result<Vec<Ray>, FrameError> {
+    let ImageSize { width, height } = photograph.size();
     let (right, bottom) = (f64::from(width - 1), f64::from(height - 1));
     let columns = (0..width).flat_map(|x| [0.0, bottom].map(|y| PixelPoint::new(f64::from(x), y)));
     let rows = (0..height).flat_map(|y| [0.0, right].map(|x| PixelPoint::new(x, f64::from(y))));
@@ -210,7 +207,7 @@ fn seen(camera: &Camera) -> Result<Vec<Ray>, FrameError> {
         let place = |i: u32, count: u32, last: f64| last * f64::from(i) / f64::from(count.max(2) - 1);
         PixelPoint::new(place(i % across, across, right), place(i / across, down, bottom))
     });
-    let rays: Vec<Ray> = columns.chain(rows).chain(within).filter_map(|at| camera.unproject(at).ok()).collect();
+    let rays: Vec<Ray> = columns.chain(rows).chain(within).filter_map(|at| photograph.ray(at)).collect();
     if rays.is_empty() { Err(FrameError::Nothing) } else { Ok(rays) }
 }
 

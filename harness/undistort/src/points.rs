@@ -55,7 +55,7 @@ mod tests {
         distortion[..4].copy_from_slice(&[-0.2, 0.05, 0.001, -0.002]);
         let size = ImageSize { width: 800, height: 600 };
         let camera: Camera = OpenCv { size, fx: 700.0, fy: 705.0, cx: 390.0, cy: 305.0, distortion, coefficients: 5 }.into();
-        let (from, to) = (View::Camera(camera), framed(&camera, Target::Pinhole, Frame::All, 1.0).unwrap());
+        let (from, to) = (View::Camera(camera), framed(&View::Camera(camera), Target::Pinhole, Frame::All, 1.0).unwrap());
         let point = Start {
             position: PixelPoint::new(101.3, 77.7),
             kind: None,

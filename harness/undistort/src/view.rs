@@ -1,9 +1,10 @@
 //! What a picture shows where: its pixels and their rays.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
-use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, Ray};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, NoCounterpart, OpenCv, Ray, Splined};
+use calibench_model::{NamedCamera, PixelPoint};
 
 /// A picture on a sphere around the camera, unrolled: columns are longitudes, rows are latitudes.
 ///
@@ -19,15 +20,25 @@ pub struct Equirectangular {
 }
 
 /// How the pixels of a picture belong to rays.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum View {
     /// As in the pictures of a camera.
     Camera(Camera),
+    /// As in those of a camera of splines.
+    Splined(Arc<Splined>),
     /// As on a sphere.
     Equirectangular(Equirectangular),
 }
 
 impl View {
+    /// That of a camera as its file has it.
+    pub fn of(named: &NamedCamera) -> Self {
+        match &named.splines {
+            Some(splines) => Self::Splined(Arc::new(splines.model.clone())),
+            None => Self::Camera(named.camera),
+        }
+    }
+
     /// That of a camera without distortion: focal lengths along x and y, px; the image of its axis.
     pub fn pinhole(size: ImageSize, [fx, fy]: [f64; 2], axis: PixelPoint) -> Self {
         let camera = OpenCv { size, fx, fy, cx: axis.x, cy: axis.y, distortion: [0.0; 14], coefficients: 5 };
@@ -38,6 +49,7 @@ impl View {
     pub fn size(&self) -> ImageSize {
         match self {
             Self::Camera(camera) => camera.size(),
+            Self::Splined(splines) => splines.size,
             Self::Equirectangular(sphere) => sphere.size,
         }
     }
@@ -46,6 +58,7 @@ impl View {
     pub fn ray(&self, at: PixelPoint) -> Option<Ray> {
         match self {
             Self::Camera(camera) => camera.unproject(at).ok(),
+            Self::Splined(splines) => splines.unproject(at).ok(),
             Self::Equirectangular(sphere) => sphere.ray(at),
         }
     }
@@ -54,8 +67,24 @@ impl View {
     pub fn image(&self, ray: Ray) -> Option<PixelPoint> {
         match self {
             Self::Camera(camera) => camera.project(ray).ok().filter(|at| at.is_finite()),
+            Self::Splined(splines) => splines.project(ray).ok().filter(|at| at.is_finite()),
             Self::Equirectangular(sphere) => sphere.image(ray),
         }
+    }
+
+    /// The image of the axis, and how many px to the right and down a radian has there.
+    ///
+    /// # Errors
+    /// The axis is not pictured.
+    pub(crate) fn axis(&self) -> Result<(PixelPoint, [f64; 2]), NoCounterpart> {
+        let axis = Ray::from_tangent(0.0, 0.0);
+        let slopes = match self {
+            Self::Camera(camera) => camera.slopes(axis)?,
+            Self::Splined(splines) => splines.slopes(axis)?,
+            Self::Equirectangular(sphere) => return Ok((sphere.axis, [sphere.scale; 2])),
+        };
+        // By the ray's components, of which y points up and the image down.
+        Ok((slopes.point, [slopes.by_ray[0][0], -slopes.by_ray[1][1]]))
     }
 
     /// The place in another picture of what is pictured at `at`; `None` for what only one of them can show.
@@ -116,7 +145,7 @@ mod tests {
     #[test]
     fn rays_lead_back_to_their_places() {
         let pinhole = View::pinhole(ImageSize { width: 640, height: 480 }, [500.0, 510.0], PixelPoint::new(300.0, 250.0));
-        for view in [sphere(), pinhole] {
+        for view in [sphere(), pinhole.clone()] {
             for (x, y) in [(0.0, 0.0), (10.5, 479.0), (639.0, 3.0), (300.0, 250.0)] {
                 let at = PixelPoint::new(x, y);
                 let back = view.image(view.ray(at).unwrap()).unwrap();

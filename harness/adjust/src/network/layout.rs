@@ -90,6 +90,17 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
+    /// What rounding of pixels makes of the weighted sum of squares of the observations as `given`.
+    pub(crate) fn rounding(&self, given: &[ImageObservation]) -> f64 {
+        let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
+        let of = |sight: &Sight| {
+            let ImageObservation { position, precision, .. } = sight.observed(given);
+            let [a, _, c] = precision.whitening();
+            rounding(position.x, a) + rounding(position.y, c)
+        };
+        self.sights.iter().map(of).sum()
+    }
+
     /// The layout of a checked network of which the datum holds the coordinates `held` (point, axis), without the observations `left_out`.
     pub(crate) fn new(network: &Network, held: &[(usize, usize)], left_out: &[usize]) -> Result<Self, NetworkError> {
         let sights = sights(network, left_out);

@@ -21,6 +21,7 @@ pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub(crate) use reliability::{critical, image_point};
 pub(crate) use residual_length::length;
+pub(crate) use residuals::each;
 pub use residuals::{Residual, Use};
 pub use robust::{adjust_robustly, scale_of};
 pub use significance::{Comparison, Significance, compare};

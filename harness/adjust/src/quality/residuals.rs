@@ -1,6 +1,7 @@
 //! Residuals, of every observation that was given.
 
-use crate::network::ImageObservation;
+use crate::network::{ImageObservation, Sight};
+use crate::normal;
 use crate::solution::Solution;
 
 /// How an observation took part.
@@ -29,6 +30,27 @@ pub struct Residual {
     pub used: Use,
 }
 
+/// The residuals of all observations in the order given, of sights in use and theirs, and as `left_out` has them of the others.
+pub(crate) fn each<'o>(
+    given: &'o [ImageObservation],
+    (sights, of): (&'o [Sight], &'o [normal::Residual]),
+    left_out: impl Fn(&ImageObservation) -> Option<[f64; 2]> + 'o,
+) -> impl ExactSizeIterator<Item = Residual> + 'o {
+    const LEFT_OUT: u32 = u32::MAX;
+    let mut place = vec![LEFT_OUT; given.len()];
+    sights.iter().enumerate().for_each(|(i, sight)| place[sight.given as usize] = i as u32);
+    place.into_iter().enumerate().map(move |(observation, place)| {
+        let o = &given[observation];
+        let (image, point) = (o.image, o.point);
+        if place == LEFT_OUT {
+            return Residual { observation, image, point, v: left_out(o), used: Use::LeftOut };
+        }
+        let residual = &of[place as usize];
+        let used = if residual.weight < 1.0 { Use::Downweighted(residual.weight) } else { Use::Full };
+        Residual { observation, image, point, v: Some(residual.px), used }
+    })
+}
+
 impl Solution<'_> {
     /// The residuals of all observations, those that were left out as well, in the order given.
     pub fn residuals(&self) -> Vec<Residual> {
@@ -37,20 +59,8 @@ impl Solution<'_> {
 
     /// [`Self::residuals`], one after the other.
     pub fn each_residual(&self) -> impl ExactSizeIterator<Item = Residual> + '_ {
-        const LEFT_OUT: u32 = u32::MAX;
         let (network, sights) = (self.engine.network, &self.engine.layout.sights);
-        let mut place = vec![LEFT_OUT; network.observations.len()];
-        sights.iter().enumerate().for_each(|(i, sight)| place[sight.given as usize] = i as u32);
-        place.into_iter().enumerate().map(move |(observation, place)| {
-            let o = &network.observations[observation];
-            let (image, point) = (o.image, o.point);
-            if place == LEFT_OUT {
-                return Residual { observation, image, point, v: self.left_out(o), used: Use::LeftOut };
-            }
-            let residual = &self.end.normals.residuals[place as usize];
-            let used = if residual.weight < 1.0 { Use::Downweighted(residual.weight) } else { Use::Full };
-            Residual { observation, image, point, v: Some(residual.px), used }
-        })
+        each(&network.observations, (sights, &self.end.normals.residuals), |o| self.left_out(o))
     }
 
     /// Residuals in use, made white by the a-priori precisions: pairs of numbers of variance 1 but for the redundancy, image by image.

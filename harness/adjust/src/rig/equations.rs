@@ -64,13 +64,7 @@ impl<'r> Frame<'r> {
         let mut counts = layout.counts;
         counts.unknowns = kept + 6 * stations;
         counts.observed = Counts::of(&rig.network, 0, 0).observed;
-        let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
-        let floor = layout.sights.iter().map(|sight| {
-            let o = sight.observed(&rig.network.observations);
-            let [a, _, c] = o.precision.whitening();
-            rounding(o.position.x, a) + rounding(o.position.y, c)
-        });
-        let floor = floor.sum();
+        let floor = layout.rounding(&rig.network.observations);
         let points = rig.network.points.iter().map(|point| point.position).collect();
         Self { rig, layout, counts, mount, kept, images, loss, points, floor }
     }

@@ -2,11 +2,9 @@
 
 use super::equations::{Frame, RigNormals, RigState, RigStep};
 use crate::AdjustError;
-use crate::descent::{Damping, Descended, Descent, descend};
+use crate::descent::{Descended, Descent, UNDAMPED, descend};
 use crate::normal::{Lost, Scratch};
 
-/// No damping, unless it is needed.
-const DAMPING: Damping = Damping { first: 0.0, again: 1e-6, least: 1e-9, rest: 0.0, most: 1e12, factors: (0.1, 10.0) };
 /// Share of the sum of squares that a step must promise for another to follow.
 const WORTH: f64 = 1e-14;
 /// Share that is so little that the sums themselves may not tell it.
@@ -39,7 +37,7 @@ pub(super) fn minimum(frame: &Frame<'_>, start: RigState, most: usize) -> Result
     let (mut scratch, mut normals) = (Scratch::default(), RigNormals::default());
     frame.linearise(&start, &mut scratch, &mut normals).map_err(|lost| not_pictured(frame, &start, lost))?;
     let mut place = Place { frame, state: start, normals, scratch, step: None };
-    let descended = descend(&mut place, &DAMPING, most)?;
+    let descended = descend(&mut place, &UNDAMPED, most)?;
     Ok(End { state: place.state, normals: place.normals, descended })
 }
 

@@ -11,7 +11,7 @@ use super::undetermined::{singular, unconnected};
 use crate::AdjustError;
 use crate::network::{Counts, ImageObservation, Layout};
 use crate::normal::{Loss, Normals};
-use crate::quality::{Residual, Use, scale_of};
+use crate::quality::{Residual, each, scale_of};
 use crate::solution::Options;
 
 /// The result of the adjustment of a rig.
@@ -116,16 +116,7 @@ impl<'r> RigSolution<'r> {
             let pixel = state.pixel(network, o)?;
             Some([pixel.x - o.position.x, pixel.y - o.position.y])
         };
-        let left_out = |(observation, o): (usize, &ImageObservation)| {
-            let (image, point) = (o.image, o.point);
-            Residual { observation, image, point, v: off(o), used: Use::LeftOut }
-        };
-        let mut all: Vec<Residual> = network.observations.iter().enumerate().map(left_out).collect();
-        for (sight, residual) in self.frame.layout.sights.iter().zip(&self.normals.residuals) {
-            let into = &mut all[sight.given as usize];
-            (into.v, into.used) = (Some(residual.px), if residual.weight < 1.0 { Use::Downweighted(residual.weight) } else { Use::Full });
-        }
-        all
+        each(&network.observations, (&self.frame.layout.sights, &self.normals.residuals), off).collect()
     }
 
     /// The same rig with the end of the adjustment as its start.

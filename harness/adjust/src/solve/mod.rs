@@ -16,8 +16,8 @@ mod window;
 use calibench_model::stop;
 
 use crate::AdjustError;
-use crate::descent::{Damping, Descended, descend};
-use crate::network::{ImageObservation, Layout, Network, Sight};
+use crate::descent::{Descended, UNDAMPED, descend};
+use crate::network::{Layout, Network};
 use crate::normal::{Loss, Lost, Normals, Scratch, linearise};
 use crate::state::{State, Step, before};
 pub(crate) use elimination_order::{Eliminated, Kept, Ordered, Plan};
@@ -32,8 +32,6 @@ use sparse_factor::Structure;
 
 /// Sights up to which the couplings of all are kept.
 const MOST_KEPT: usize = 1 << 18;
-/// No damping, unless it is needed.
-const DAMPING: Damping = Damping { first: 0.0, again: 1e-6, least: 1e-9, rest: 0.0, most: 1e12, factors: (0.1, 10.0) };
 
 /// The reduced normal equations, solved: what the way back and covariances need.
 #[derive(Clone, Debug)]
@@ -74,13 +72,7 @@ impl<'n> Engine<'n> {
         layout.keeps_couplings = plan.eliminated == Eliminated::Poses || layout.sights.len() <= MOST_KEPT;
         let blank = Reduced::new(&plan.kept, || plan.pattern(&layout));
         let structure = Structure::of(&blank);
-        let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
-        let floor = |sight: &Sight| {
-            let ImageObservation { position, precision, .. } = sight.observed(&network.observations);
-            let [a, _, c] = precision.whitening();
-            rounding(position.x, a) + rounding(position.y, c)
-        };
-        let floor = layout.sights.iter().map(floor).sum();
+        let floor = layout.rounding(&network.observations);
         Self { network, layout, plan, loss, structure, blank, floor }
     }
 
@@ -168,7 +160,7 @@ impl<'n> Engine<'n> {
     /// [`AdjustError::NotPictured`] by the start values.
     pub(crate) fn descend(&self, start: State, most_iterations: usize, worth: f64) -> Result<End, AdjustError> {
         let mut place = Place::at(self, start, worth)?;
-        let Descended { iterations, gain, converged } = descend(&mut place, &DAMPING, most_iterations)?;
+        let Descended { iterations, gain, converged } = descend(&mut place, &UNDAMPED, most_iterations)?;
         let Place { state, normals, solved, .. } = place;
         Ok(End { state, normals, iterations, gain, converged, solved })
     }

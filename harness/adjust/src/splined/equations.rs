@@ -5,7 +5,7 @@ use calibench_model::camera::{Splined, SplinedImage};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::{CORE, SplinedNetwork};
-use crate::network::{Counts, ImageObservation, Layout, Sight, Status};
+use crate::network::{Counts, ImageObservation, Layout, Status};
 use crate::normal::{Loss, Lost, Residual};
 use crate::state::{camera_from_world, turned};
 
@@ -61,13 +61,7 @@ impl<'n> Frame<'n> {
         counts.unknowns = free.iter().filter(|free| **free).count() + 6 * of.network.images.len();
         // The prior: two of each control point.
         counts.observed = 2 * control;
-        let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
-        let floor = |sight: &Sight| {
-            let o = sight.observed(&of.network.observations);
-            let [a, _, c] = o.precision.whitening();
-            rounding(o.position.x, a) + rounding(o.position.y, c)
-        };
-        let floor = layout.sights.iter().map(floor).sum();
+        let floor = layout.rounding(&of.network.observations);
         Self { of, layout, counts, loss, free, floor }
     }
 

@@ -1,22 +1,22 @@
 //! How long the residuals of splines are, by their own covariances.
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{DMatrix, DMatrixView, Matrix2, Vector2};
 
 use super::equations::{Frame, SightRow, SplinedNormals, SplinedState};
-use super::reduced::Solved;
+use super::reduced::Inverse;
 use crate::quality::length;
 use crate::solve::forward;
 
 /// Of each sight, in the order of the layout: the length of its residual by its own covariance, in a-priori standard deviations of two normal numbers; `None` where nothing checks it.
 ///
 /// Where few image points hold the splines these follow an image point that is wrong: its residual is small, and so is its standard deviation.
-pub(super) fn lengths(frame: &Frame<'_>, state: &SplinedState, solved: &Solved, normals: &SplinedNormals) -> Vec<Option<f64>> {
+pub(super) fn lengths(frame: &Frame<'_>, state: &SplinedState, inverse: &Inverse, normals: &SplinedNormals) -> Vec<Option<f64>> {
     let mut found = vec![None; frame.layout.sights.len()];
     let n = frame.free.len();
     let precision = |sight: usize| frame.layout.sights[sight].observed(&frame.of.network.observations).precision;
-    let cofactors = DMatrix::from_vec(n, n, solved.cofactors(frame));
+    let cofactors = DMatrixView::from_slice(&inverse.cofactors, n, n);
     for (index, (image, range)) in normals.images.iter().zip(&frame.layout.of_image).enumerate() {
-        let l = &solved.factors[index];
+        let l = &inverse.solved.factors[index];
         let y = image.solved(l);
         let own = cofactors.select_columns(&image.columns).select_rows(&image.columns);
         let m = image.columns.len();

@@ -78,6 +78,15 @@ impl SplinedNetwork {
         all.filter(|(_, ray)| self.camera.cell(*ray).is_none()).map(|(index, ray)| (index, self.camera.fov_for(ray))).collect()
     }
 
+    /// What an observation is of, in words: its target and its image.
+    ///
+    /// # Panics
+    /// There is no such observation.
+    pub fn name_of(&self, observation: usize) -> String {
+        let o = &self.network.observations[observation];
+        format!("{} in {}", self.network.points[o.point].name, self.network.images[o.image].name)
+    }
+
     /// Numbers of the splines: the core, then x and y of each control point.
     pub(crate) fn numbers(&self) -> usize {
         CORE + 2 * self.camera.control.len()

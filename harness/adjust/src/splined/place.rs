@@ -4,11 +4,9 @@ use calibench_model::camera::NoCounterpart;
 
 use super::equations::{Frame, SplinedNormals, SplinedState, SplinedStep};
 use crate::AdjustError;
-use crate::descent::{Damping, Descended, Descent, descend};
+use crate::descent::{Descended, Descent, UNDAMPED, descend};
 use crate::normal::Lost;
 
-/// No damping, unless it is needed.
-const DAMPING: Damping = Damping { first: 0.0, again: 1e-6, least: 1e-9, rest: 0.0, most: 1e12, factors: (0.1, 10.0) };
 /// Share of the sum of squares that a step must promise for another to follow: along what the prior alone holds (the camera turns, and all control points with it) the way is long
 /// and crooked.
 const WORTH: f64 = 1e-10;
@@ -50,7 +48,7 @@ pub(super) fn minimum(frame: &Frame<'_>, start: SplinedState, most: usize) -> Re
         AdjustError::NotPictured { image, point, why: NoCounterpart::Behind }
     })?;
     let mut place = Place { frame, state: start, normals, other: SplinedNormals::default(), step: None, promised: 0.0 };
-    let descended = descend(&mut place, &DAMPING, most)?;
+    let descended = descend(&mut place, &UNDAMPED, most)?;
     Ok(End { state: place.state, normals: place.normals, descended })
 }
 

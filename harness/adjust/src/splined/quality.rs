@@ -79,13 +79,12 @@ fn turn_by(n: usize, points: impl Iterator<Item = FarPoint>) -> Matrix3xX<f64> {
 impl SplinedQuality {
     pub(super) fn new(
         camera: &Splined,
-        (cofactors, factor): (Vec<f64>, f64),
+        (cofactors, factor): (&[f64], f64),
         fit: SplinedFit,
         rays: impl Iterator<Item = Ray> + Clone,
     ) -> Self {
         let n = cofactors.len().isqrt();
-        let mut covariance = DMatrix::from_vec(n, n, cofactors);
-        covariance *= factor;
+        let covariance = DMatrix::from_column_slice(n, n, cofactors) * factor;
         let [columns, rows] = camera.cells();
         let mut points = vec![0; columns * rows];
         rays.clone().filter_map(|ray| camera.cell(ray)).for_each(|[column, row]| points[row * columns + column] += 1);

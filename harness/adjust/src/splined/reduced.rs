@@ -105,10 +105,18 @@ impl Eliminated {
 }
 
 /// The equations, solved.
+#[derive(Clone, Debug)]
 pub(super) struct Solved {
     factor: Factor,
     right: Vec<f64>,
     pub(super) factors: Vec<[[f64; 6]; 6]>,
+}
+
+/// The equations, solved, with [`Solved::cofactors`].
+#[derive(Clone, Debug)]
+pub(super) struct Inverse {
+    pub(super) solved: Solved,
+    pub(super) cofactors: Vec<f64>,
 }
 
 impl Solved {

@@ -1,5 +1,7 @@
 //! What the adjustment of splines returns.
 
+use std::sync::OnceLock;
+
 use calibench_model::Pose;
 use calibench_model::camera::{CameraModel, Ray, Splined};
 
@@ -9,12 +11,12 @@ use super::lengths::lengths;
 use super::place::{End, minimum};
 use super::prior::prior_trace;
 use super::quality::{SplinedFit, SplinedQuality};
-use super::reduced::{Loose, Solved};
+use super::reduced::{Inverse, Loose};
 use crate::AdjustError;
 use crate::defect::{Defect, Direction};
 use crate::network::{Counts, ImageObservation, Layout};
 use crate::normal::Loss;
-use crate::quality::{Residual, Use, Variance, scale_of};
+use crate::quality::{Residual, Variance, each};
 use crate::solution::Options;
 
 /// The result of the adjustment of splines.
@@ -25,6 +27,7 @@ pub struct SplinedSolution<'n> {
     normals: SplinedNormals,
     iterations: usize,
     options: Options,
+    inverse: OnceLock<Inverse>,
 }
 
 /// Adjusts splines from their start values: by least squares, or with Huber's weights.
@@ -60,7 +63,7 @@ fn adjust_from<'n>(
         normals.eliminate(0.0).map_err(|Loose(image)| loose(image))?;
         return Err(AdjustError::NotConverged { iterations: descended.iterations, gain: descended.gain, cost: normals.cost });
     }
-    Ok(SplinedSolution { frame, state, normals, iterations: descended.iterations, options: options.clone() })
+    Ok(SplinedSolution { frame, state, normals, iterations: descended.iterations, options: options.clone(), inverse: OnceLock::new() })
 }
 
 impl<'n> SplinedSolution<'n> {
@@ -104,30 +107,14 @@ impl<'n> SplinedSolution<'n> {
         self.normals.prior
     }
 
-    /// The standard deviation of an image coordinate against the a-priori one from the median residual, a number; `None` without residuals.
-    pub fn scale(&self) -> Option<f64> {
-        let given = &self.frame.of.network.observations;
-        let sights = self.frame.layout.sights.iter().zip(&self.normals.residuals);
-        scale_of(sights.map(|(sight, residual)| sight.observed(given).precision.whitened(residual.px)))
-    }
-
     /// The residuals of all observations, those that were left out as well, in the order given.
     pub fn residuals(&self) -> Vec<Residual> {
         let network = &self.frame.of.network;
-        let off = |ray: Ray, o: &ImageObservation| {
-            let pixel = self.state.camera.project(ray).ok()?;
+        let off = |o: &ImageObservation| {
+            let pixel = self.state.camera.project(self.ray_of(o)).ok()?;
             Some([pixel.x - o.position.x, pixel.y - o.position.y])
         };
-        let left_out = |(observation, o): (usize, &ImageObservation)| {
-            let (image, point) = (o.image, o.point);
-            Residual { observation, image, point, v: off(self.ray(observation), o), used: Use::LeftOut }
-        };
-        let mut all: Vec<Residual> = network.observations.iter().enumerate().map(left_out).collect();
-        for (sight, residual) in self.frame.layout.sights.iter().zip(&self.normals.residuals) {
-            let into = &mut all[sight.given as usize];
-            (into.v, into.used) = (Some(residual.px), if residual.weight < 1.0 { Use::Downweighted(residual.weight) } else { Use::Full });
-        }
-        all
+        each(&network.observations, (&self.frame.layout.sights, &self.normals.residuals), off).collect()
     }
 
     /// The ray of an observation, by its index.
@@ -135,7 +122,10 @@ impl<'n> SplinedSolution<'n> {
     /// # Panics
     /// There is no such observation.
     pub fn ray(&self, observation: usize) -> Ray {
-        let o = &self.frame.of.network.observations[observation];
+        self.ray_of(&self.frame.of.network.observations[observation])
+    }
+
+    fn ray_of(&self, o: &ImageObservation) -> Ray {
         self.state.poses[o.image].ray(&self.frame.point(&self.state, o.point))
     }
 
@@ -145,10 +135,10 @@ impl<'n> SplinedSolution<'n> {
     /// Without redundancy there is no estimated variance; equations that are singular.
     pub fn quality(&self, variance: Variance) -> Result<SplinedQuality, AdjustError> {
         const NONE: AdjustError = AdjustError::NotAvailable("without redundancy there is no estimated variance");
-        let cofactors = self.solved()?.cofactors(&self.frame);
+        let Inverse { cofactors, .. } = self.inverse()?;
         let counts = self.counts();
         // What the prior determines of the unknowns image points need not: the trace of its weights times the cofactors.
-        let of_prior = prior_trace(self.frame.of, &cofactors);
+        let of_prior = prior_trace(self.frame.of, cofactors);
         let redundancy = counts.image_coordinates as f64 + of_prior - counts.unknowns as f64;
         let variance_factor = (redundancy > 0.0).then(|| (self.cost() - self.prior_cost()) / redundancy);
         let factor = match variance {
@@ -160,9 +150,15 @@ impl<'n> SplinedSolution<'n> {
         Ok(SplinedQuality::new(&self.state.camera, (cofactors, factor), fit, rays))
     }
 
-    fn solved(&self) -> Result<Solved, AdjustError> {
+    /// The equations at the end, solved and inverted once for all who ask.
+    fn inverse(&self) -> Result<&Inverse, AdjustError> {
         const SINGULAR: AdjustError = AdjustError::NotAvailable("the equations of the splines are singular");
-        self.normals.eliminate(0.0).ok().and_then(|left| left.factor(&self.normals)).ok_or(SINGULAR)
+        if let Some(inverse) = self.inverse.get() {
+            return Ok(inverse);
+        }
+        let solved = self.normals.eliminate(0.0).ok().and_then(|left| left.factor(&self.normals)).ok_or(SINGULAR)?;
+        let cofactors = solved.cofactors(&self.frame);
+        Ok(self.inverse.get_or_init(|| Inverse { solved, cofactors }))
     }
 
     /// The lengths of the residuals in use by their own covariances, in a-priori standard deviations of two normal numbers, with the index of the observation; `None` where nothing checks it.
@@ -170,7 +166,7 @@ impl<'n> SplinedSolution<'n> {
     /// # Errors
     /// Equations that are singular.
     pub fn lengths(&self) -> Result<Vec<(usize, Option<f64>)>, AdjustError> {
-        let lengths = lengths(&self.frame, &self.state, &self.solved()?, &self.normals);
+        let lengths = lengths(&self.frame, &self.state, self.inverse()?, &self.normals);
         Ok(self.frame.layout.sights.iter().map(|sight| sight.given as usize).zip(lengths).collect())
     }
 

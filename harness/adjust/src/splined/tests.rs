@@ -177,6 +177,24 @@ fn cofactors_are_those_of_the_whole_matrix() {
     }
 }
 
+/// Image coordinates less the trace of what they say of the unknowns by the inverse of all.
+#[test]
+fn redundancy_is_that_of_image_points() {
+    let network = SplinedNetwork { prior: KnotPrior { along: 30.0, across: 100.0 }, ..network(3, 0.5) };
+    let found = adjust_splined(&network, &OPTIONS).unwrap();
+    let ended = found.ended();
+    let (frame, none) = (frame(&ended), SplinedNetwork { prior: KnotPrior { along: 1e-9, across: 1e-9 }, ..ended.clone() });
+    let state = frame.start();
+    let own = frame.free.iter().enumerate().filter(|(_, free)| !**free).count() as f64;
+    let all = dense(&frame, &state).try_inverse().unwrap() * dense(&self::frame(&none), &state);
+    let expected = found.counts().image_coordinates as f64 - (all.trace() - own);
+    let fit = found.quality(Variance::Estimated).unwrap().fit;
+    let by_unknowns = found.counts().image_coordinates as f64 - found.counts().unknowns as f64;
+    assert!((fit.redundancy - expected).abs() < 0.02 && expected > by_unknowns + 5.0, "{fit:?} {expected} {by_unknowns}");
+    let sigma0 = ((found.cost() - found.prior_cost()) / expected).sqrt();
+    assert!((fit.sigma0.unwrap() - sigma0).abs() < 1e-4 * sigma0);
+}
+
 #[test]
 fn control_points_are_found_from_none() {
     for order in [2, 3] {

@@ -20,6 +20,8 @@ pub struct SplinedCalibration<'p> {
     pub solution: SplinedSolution<'p>,
     /// Image points that were left out, if they were looked for.
     pub found: Vec<Found>,
+    /// Image points in use that do not fit: all where none were to be left out, or those that would be too many.
+    pub kept: Vec<Found>,
     /// How well core and control points are known, with the estimated variance factor where there is redundancy.
     pub quality: SplinedQuality,
     /// The uncertainty over the frame, row by row; places without a ray are missing.
@@ -61,16 +63,8 @@ impl SplinedCalibration<'_> {
     pub fn share_unheld(&self) -> f64 {
         let size = self.solution.camera().size();
         let held: f64 = self.over_frame.iter().filter(|place| place.is_held).map(|place| cell_share(size, place.at)).sum();
-        let (columns, rows) = GRID;
-        let (right, bottom) = (f64::from(size.width - 1), f64::from(size.height - 1));
-        let places = (0..columns * rows).map(|k| {
-            let at = calibench_model::PixelPoint::new(
-                right * (k % columns) as f64 / (columns - 1) as f64,
-                bottom * (k / columns) as f64 / (rows - 1) as f64,
-            );
-            cell_share(size, at)
-        });
-        1.0 - held / places.sum::<f64>()
+        let cells = (GRID.0 - 1) * (GRID.1 - 1);
+        1.0 - held / cells as f64
     }
 
     /// Beyond which the camera is in doubt, px.

@@ -5,14 +5,13 @@ use calibench_model::camera::fold_radius;
 
 use super::calibration::SplinedCalibration;
 use super::doubted::{SplinedDoubt, SplinedSubject};
-use super::gross::beyond_chance;
 use crate::{GrossErrors, few};
 
 /// Share of the image points from which those that are left out are worth a doubt.
 const MANY: f64 = 0.01;
 
 pub(super) fn doubts(found: &SplinedCalibration<'_>) -> Vec<SplinedDoubt> {
-    [over_frame(found), folded(found), beyond(found), gross(found)].into_iter().flatten().collect()
+    [over_frame(found), folded(found), beyond(found), kept(found), left_out(found)].into_iter().flatten().collect()
 }
 
 fn over_frame(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
@@ -40,15 +39,7 @@ fn folded(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
 fn beyond(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
     let ended = found.solution.ended();
     let used: Vec<bool> = found.solution.residuals().iter().map(|r| r.used != Use::LeftOut).collect();
-    let outside: Vec<String> = ended
-        .outside()
-        .iter()
-        .filter(|(index, _)| used[*index])
-        .map(|(index, _)| {
-            let o = &ended.network.observations[*index];
-            format!("{} in {}", ended.network.points[o.point].name, ended.network.images[o.image].name)
-        })
-        .collect();
+    let outside: Vec<String> = ended.outside().iter().filter(|(index, _)| used[*index]).map(|(index, _)| ended.name_of(*index)).collect();
     if outside.is_empty() {
         return None;
     }
@@ -60,24 +51,24 @@ fn beyond(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
     Some(SplinedDoubt { subject: SplinedSubject::Grid, words })
 }
 
-/// Many were left out, or there are some that were not to be.
-fn gross(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
-    let network = &found.prepared.splines.network;
-    let all = network.observations.len();
-    let name = |observation: usize| {
-        let o = &network.observations[observation];
-        format!("{} in {}", network.points[o.point].name, network.images[o.image].name)
-    };
-    let stay = beyond_chance(&found.solution).unwrap_or_default();
-    let words = if !stay.is_empty() {
-        let names: Vec<String> = stay.iter().map(|(observation, _)| name(*observation)).collect();
-        let advice = if found.prepared.asked.settings.gross == GrossErrors::Kept { "; without --plain they are left out" } else { "" };
-        format!("{} of {all} image points do not fit and were kept: {}{advice}", stay.len(), few(&names))
-    } else if found.found.len() as f64 > MANY * all as f64 {
-        let names: Vec<String> = found.found.iter().map(|found| name(found.observation)).collect();
-        format!("{} of {all} image points do not fit and were left out: {}", found.found.len(), few(&names))
-    } else {
+/// Image points that do not fit and are in use.
+fn kept(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
+    let names: Vec<String> = found.kept.iter().map(|kept| found.prepared.splines.name_of(kept.observation)).collect();
+    let advice = if found.prepared.asked.settings.gross == GrossErrors::Kept { "; without --plain they are left out" } else { "" };
+    let words = || format!("{} of {} image points do not fit and were kept: {}{advice}", names.len(), all(found), few(&names));
+    (!names.is_empty()).then(|| SplinedDoubt { subject: SplinedSubject::GrossErrors, words: words() })
+}
+
+/// More image points were left out than single ones.
+fn left_out(found: &SplinedCalibration<'_>) -> Option<SplinedDoubt> {
+    if found.found.len() as f64 <= MANY * all(found) as f64 {
         return None;
-    };
+    }
+    let names: Vec<String> = found.found.iter().map(|left| found.prepared.splines.name_of(left.observation)).collect();
+    let words = format!("{} of {} image points do not fit and were left out: {}", names.len(), all(found), few(&names));
     Some(SplinedDoubt { subject: SplinedSubject::GrossErrors, words })
+}
+
+fn all(found: &SplinedCalibration<'_>) -> usize {
+    found.prepared.splines.network.observations.len()
 }

@@ -81,10 +81,14 @@ impl Core {
     /// With the parameters `names` solved for.
     ///
     /// # Errors
-    /// A name that the core does not have, in words.
+    /// A name that the core does not have or that is held already, in words.
     pub fn solving(mut self, names: &[String]) -> Result<Self, String> {
         for name in names {
-            self.free[place(name)?] = true;
+            let place = place(name)?;
+            if self.values[place].is_some() {
+                return Err(format!("{name} is held: expected it held or solved for"));
+            }
+            self.free[place] = true;
         }
         Ok(self)
     }
@@ -162,5 +166,6 @@ mod tests {
         }
         assert!(core.holding("fx=1").unwrap_err().contains("twice"));
         assert!(Core::HELD.solving(&["fxx".into()]).unwrap_err().contains("did you mean `fx`"));
+        assert!(core.solving(&["fx".into()]).unwrap_err().contains("fx is held"));
     }
 }

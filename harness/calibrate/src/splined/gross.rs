@@ -15,76 +15,72 @@ const FOLLOWS: f64 = 0.8;
 /// Share of the image points that is left out at most: more are no errors of single points.
 const MOST_LEFT_OUT: f64 = 0.1;
 
-/// Residuals by their own covariances.
-struct Lengths {
-    /// By the index of the observation, in standard deviations of the set, the longest first.
-    of: Vec<(usize, f64)>,
-    critical: f64,
+/// Splines with what became of the image points that do not fit.
+pub(super) struct Search<'n> {
+    pub(super) solution: SplinedSolution<'n>,
+    /// Left out.
+    pub(super) left_out: Vec<Found>,
+    /// In use.
+    pub(super) kept: Vec<Found>,
 }
 
-impl Lengths {
-    /// `None` where residuals are no more than rounding.
-    fn of(solution: &SplinedSolution<'_>) -> Result<Option<Self>, CalibrationError> {
-        let mut of: Vec<(usize, f64)> = solution.lengths()?.into_iter().filter_map(|(index, length)| Some((index, length?))).collect();
-        let scale = scale_of(of.iter().map(|(_, length)| [*length, 0.0]));
-        let Some(scale) = scale.filter(|scale| !is_rounding(Some(*scale))) else { return Ok(None) };
-        of.iter_mut().for_each(|(_, length)| *length /= scale);
-        of.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let critical = (2.0 * (of.len() as f64 / BY_CHANCE).ln()).sqrt();
-        Ok(Some(Self { of, critical }))
+impl<'n> Search<'n> {
+    /// Leaves nothing out.
+    pub(super) fn keeping(solution: SplinedSolution<'n>) -> Result<Self, CalibrationError> {
+        let kept = beyond(&solution)?;
+        Ok(Self { solution, left_out: Vec::new(), kept })
     }
 
-    fn beyond(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.of.iter().copied().take_while(|(_, length)| *length > self.critical)
+    /// Leaves out what no normal error would be, adjusts again, until there is nothing more; all are kept where these are too many.
+    ///
+    /// Splines follow an image point that is wrong, and so do all image points about it: of those in one image, and of those that the same control points hold, the longest go at a time.
+    pub(super) fn leaving_out(all: SplinedSolution<'n>) -> Result<Self, CalibrationError> {
+        let most = MOST_LEFT_OUT * all.network().network.observations.len() as f64;
+        let kept = beyond(&all)?;
+        let mut search = Self { solution: all.clone(), left_out: Vec::new(), kept };
+        for _ in 0..ROUNDS {
+            let more = search.apart();
+            if more.is_empty() {
+                break;
+            }
+            search.left_out.extend(more);
+            let left_out: Vec<usize> = search.left_out.iter().map(|found| found.observation).collect();
+            let better = if left_out.len() as f64 > most { None } else { search.solution.without(&left_out).ok() };
+            let Some(better) = better else { return Self::keeping(all) };
+            search.kept = beyond(&better)?;
+            search.solution = better;
+        }
+        Ok(search)
+    }
+
+    /// Those in use that are not long because of one that is longer.
+    fn apart(&self) -> Vec<Found> {
+        let (observations, camera) = (&self.solution.network().network.observations, self.solution.camera());
+        let mut apart: Vec<(Found, [usize; 2])> = Vec::new();
+        for found in &self.kept {
+            let Some(cell) = camera.cell(self.solution.ray(found.observation)) else { continue };
+            let follows = |(other, at): &(Found, [usize; 2])| {
+                let is_of_image = observations[other.observation].image == observations[found.observation].image;
+                (is_of_image || are_near(camera, *at, cell)) && found.w < FOLLOWS * other.w
+            };
+            if !apart.iter().any(follows) {
+                apart.push((Found { left_out: true, ..*found }, cell));
+            }
+        }
+        apart.into_iter().map(|(found, _)| found).collect()
     }
 }
 
-/// The image points whose residuals no normal error would have, the longest first: by index and length.
-pub(super) fn beyond_chance(solution: &SplinedSolution<'_>) -> Result<Vec<(usize, f64)>, CalibrationError> {
-    Ok(Lengths::of(solution)?.map_or_else(Vec::new, |lengths| lengths.beyond().collect()))
-}
-
-/// Leaves out what no normal error would be, adjusts again, until there is nothing more; all are kept where these are too many.
-///
-/// Splines follow an image point that is wrong, and so do all image points about it: of those in one image, and of those that the same control points hold, the longest go at a time.
-pub(super) fn without_gross_errors(all: SplinedSolution<'_>) -> Result<(SplinedSolution<'_>, Vec<Found>), CalibrationError> {
-    let most = MOST_LEFT_OUT * all.network().network.observations.len() as f64;
-    let (mut solution, mut found): (SplinedSolution<'_>, Vec<Found>) = (all.clone(), Vec::new());
-    for _ in 0..ROUNDS {
-        let Some(lengths) = Lengths::of(&solution)? else { break };
-        let more = apart(&solution, &lengths);
-        if more.is_empty() {
-            break;
-        }
-        found.extend(more);
-        let left_out: Vec<usize> = found.iter().map(|found| found.observation).collect();
-        if found.len() as f64 > most {
-            return Ok((all, Vec::new()));
-        }
-        match solution.without(&left_out) {
-            Ok(better) => solution = better,
-            Err(_) => return Ok((all, Vec::new())),
-        }
-    }
-    Ok((solution, found))
-}
-
-/// Those beyond the critical length that are not long because of one that is longer.
-fn apart(solution: &SplinedSolution<'_>, lengths: &Lengths) -> Vec<Found> {
-    let observations = &solution.network().network.observations;
-    let mut found: Vec<(Found, [usize; 2])> = Vec::new();
-    for (observation, w) in lengths.beyond() {
-        let Some(cell) = solution.camera().cell(solution.ray(observation)) else { continue };
-        let follows = |(other, at): &(Found, [usize; 2])| {
-            let is_near =
-                observations[other.observation].image == observations[observation].image || are_near(solution.camera(), *at, cell);
-            is_near && w < FOLLOWS * other.w
-        };
-        if !found.iter().any(follows) {
-            found.push((Found { observation, w, critical: lengths.critical, left_out: true }, cell));
-        }
-    }
-    found.into_iter().map(|(found, _)| found).collect()
+/// The image points whose residuals, by their own covariances, no normal error would have, the longest first; none where residuals are no more than rounding.
+fn beyond(solution: &SplinedSolution<'_>) -> Result<Vec<Found>, CalibrationError> {
+    let lengths: Vec<(usize, f64)> = solution.lengths()?.into_iter().filter_map(|(index, length)| Some((index, length?))).collect();
+    let scale = scale_of(lengths.iter().map(|(_, length)| [*length, 0.0]));
+    let Some(scale) = scale.filter(|scale| !is_rounding(Some(*scale))) else { return Ok(Vec::new()) };
+    let critical = (2.0 * (lengths.len() as f64 / BY_CHANCE).ln()).sqrt();
+    let found = |(observation, length): (usize, f64)| Found { observation, w: length / scale, critical, left_out: false };
+    let mut beyond: Vec<Found> = lengths.into_iter().map(found).filter(|found| found.w > critical).collect();
+    beyond.sort_by(|a, b| b.w.total_cmp(&a.w));
+    Ok(beyond)
 }
 
 /// Whether image points of two cells depend on the same control points.

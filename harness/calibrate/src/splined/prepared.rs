@@ -145,14 +145,7 @@ fn within_grid(splines: &SplinedNetwork, asked: &SplinedSettings) -> Result<(), 
     if outside.is_empty() {
         return Ok(());
     }
-    let network = &splines.network;
-    let names: Vec<String> = outside
-        .iter()
-        .map(|(index, _)| {
-            let o = &network.observations[*index];
-            format!("{} in {}", network.points[o.point].name, network.images[o.image].name)
-        })
-        .collect();
+    let names: Vec<String> = outside.iter().map(|(index, _)| splines.name_of(*index)).collect();
     let widest = outside.iter().map(|(_, fov)| *fov).fold(0.0, f64::max);
     let SplineGrid { columns, rows, fov_x_deg, order } = asked.grid;
     // A little more: the poses are those of a lean camera.
@@ -167,7 +160,7 @@ fn within_grid(splines: &SplinedNetwork, asked: &SplinedSettings) -> Result<(), 
     Err(CalibrationError::Splines(format!(
         "{} of {} image points lie beyond the grid of splines of {fov_x_deg} degrees: {}; {advice}",
         outside.len(),
-        network.observations.len(),
+        splines.network.observations.len(),
         few(&names)
     )))
 }

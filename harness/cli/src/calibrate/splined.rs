@@ -1,11 +1,11 @@
 //! `calibench calibrate --model splined:...`: mrcal's splines.
 
-use calibench_calibrate::splined::{
-    Core, SplineGrid, SplinedCalibration, SplinedPrepared, SplinedSettings, calibrate_splined, prepare_splined,
-};
+use calibench_calibrate::splined::{Core, SplineGrid, SplinedCalibration, SplinedSettings, calibrate_splined, prepare_splined};
 use calibench_cameras::{inputs_of, of_splines};
 use calibench_model::NamedCamera;
-use calibench_model::camera::Splined;
+use calibench_model::camera::{Camera, Splined};
+use calibench_model::convert::Region;
+use calibench_model::named_camera::Splines;
 use calibench_report::calibration::{splined_summary, write_splined_report};
 use calibench_report::json::SplinedAnswer;
 use clap::Args;
@@ -31,9 +31,11 @@ impl SplinedArguments {
         }
     }
 
-    fn core(&self) -> Result<Core, Failure> {
+    /// The core, held where `--hold` says, with the parameters `solve` solved for.
+    fn core(&self, solve: &[String]) -> Result<Core, Failure> {
         let held = self.hold.iter().try_fold(Core::HELD, |core, text| core.holding(text));
-        held.map_err(|why| Failure::input(format!("--hold: {why}")))
+        let core = held.map_err(|why| Failure::input(format!("--hold: {why}")))?;
+        core.solving(solve).map_err(|why| Failure::input(format!("--solve: {why}")))
     }
 }
 
@@ -65,7 +67,6 @@ impl Calibrate {
             (self.huber.is_some(), "--huber"),
             (self.snoop, "--snoop"),
             (self.cameras.has_priors(), "--prior"),
-            (self.cameras.common_solve().is_some(), "--solve (the core is held: --hold says where)"),
         ];
         let name = |(_, name): &(bool, &'static str)| Err(Failure::input(format!("{name} is not there for splines")));
         given.iter().find(|(is_given, _)| *is_given).map_or(Ok(()), name)
@@ -74,7 +75,7 @@ impl Calibrate {
     /// As [`Calibrate::run`], of splines.
     pub(super) fn run_splined(&self, grid: SplineGrid, taken: &[String], context: &Context<'_>) -> Result<(), Failure> {
         self.refuse_for_splines()?;
-        let core = self.splined.core()?;
+        let core = self.splined.core(&self.cameras.common_solve().unwrap_or_default())?;
         let given = [&self.points, &self.control].into_iter().flatten().cloned();
         let inputs = inputs_of(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let outputs = self.outputs(&inputs)?;
@@ -107,9 +108,12 @@ impl Calibrate {
 
     fn deliver_splined(&self, found: &SplinedCalibration<'_>, doubts: &[String], outputs: &Outputs) -> Result<(), Failure> {
         let camera = outputs.camera.as_ref().map_or(Ok(()), |output| {
-            let named = named(found.solution.camera(), found.prepared);
+            let (splines, lean) = (found.solution.camera(), found.prepared.lean);
             let ending = output.path().extension().and_then(|ending| ending.to_str());
-            if self.to.as_deref() != Some("mrcal") && (self.to.is_some() || ending != Some("cameramodel")) {
+            let holds_splines = self.to.as_deref().map_or(ending == Some("cameramodel"), |to| to == "mrcal");
+            // The nearest camera of another model takes longer than all the rest where a part of the frame has no ray.
+            let named = if holds_splines { with(splines, lean) } else { nearest(splines, lean) };
+            if !holds_splines {
                 named.notes.iter().for_each(|note| say!("{}: {note}", output.path().display()));
                 if let Some(why) = named.doubt() {
                     return Err(Failure::input(format!("-o {}: {why}; expected the ending cameramodel, mrcal's", output.path().display())));
@@ -125,14 +129,15 @@ impl Calibrate {
 }
 
 /// Splines with the camera of another model that is nearest to them, for files that hold none; where none is, with the one that they started from.
-fn named(camera: &Splined, prepared: &SplinedPrepared) -> NamedCamera {
-    of_splines("", camera.clone()).unwrap_or_else(|why| {
+fn nearest(splines: &Splined, lean: Camera) -> NamedCamera {
+    of_splines("", splines.clone()).unwrap_or_else(|why| {
         say!("{why}");
-        let splines = calibench_model::named_camera::Splines {
-            model: camera.clone(),
-            residual_px: f64::INFINITY,
-            region: calibench_model::convert::Region::Frame,
-        };
-        NamedCamera { splines: Some(Box::new(splines)), ..NamedCamera::new("", prepared.lean) }
+        with(splines, lean)
     })
+}
+
+/// Splines with a camera of another model of which nobody says how near it is.
+fn with(splines: &Splined, lean: Camera) -> NamedCamera {
+    let splines = Splines { model: splines.clone(), residual_px: f64::INFINITY, region: Region::Frame };
+    NamedCamera { splines: Some(Box::new(splines)), ..NamedCamera::new("", lean) }
 }

@@ -27,6 +27,8 @@ const SHRUNK: f64 = 1.5;
 pub(super) struct Views {
     pub(super) given: View,
     pub(super) made: View,
+    /// The camera of new pictures, where it is that of a file.
+    of_file: Option<NamedCamera>,
 }
 
 impl Views {
@@ -39,8 +41,8 @@ impl Views {
         let given = command.given_size()?;
         let (of_camera, of_target) = if command.redistort { (None, given) } else { (given, None) };
         let camera = taken(&command.camera, command.size.or(of_camera), of_camera, command)?;
-        let photograph = View::Camera(camera);
-        let new = match (command.target_file(), command.to.as_str()) {
+        let photograph = View::of(&camera);
+        let (new, of_new) = match (command.target_file(), command.to.as_str()) {
             (Some(file), _) => {
                 if !matches!(command.frame, Frame::Keep) || command.scale != 1.0 {
                     return Err(Failure::input(format!(
@@ -55,14 +57,19 @@ impl Views {
                         NAMES.join(", ")
                     )));
                 }
-                View::Camera(taken(&file, of_target.or(command.size), of_target, command)?)
+                let other = taken(&file, of_target.or(command.size), of_target, command)?;
+                (View::of(&other), Some(other))
             }
             (None, name) => {
                 let target = if name == NAMES[0] { Target::Pinhole } else { Target::Equirectangular };
-                framed(&camera, target, command.frame.of(), command.scale)?
+                (framed(&photograph, target, command.frame.of(), command.scale)?, None)
             }
         };
-        Ok(if command.redistort { Self { given: new, made: photograph } } else { Self { given: photograph, made: new } })
+        Ok(if command.redistort {
+            Self { given: new, made: photograph, of_file: Some(camera) }
+        } else {
+            Self { given: photograph, made: new, of_file: of_new }
+        })
     }
 
     /// The map from new pictures to those that are given.
@@ -105,8 +112,11 @@ impl Views {
 
     /// The camera of new pictures as a file's name and bytes, if there is one.
     pub(super) fn camera_file(&self, convention: &str, pitch_um: Option<f64>) -> Result<Option<(String, Vec<u8>)>, Failure> {
-        let View::Camera(camera) = self.made else { return Ok(None) };
-        let source = NamedCamera::new("", least(camera));
+        let source = match (&self.made, &self.of_file) {
+            (View::Splined(_), Some(named)) => NamedCamera { name: String::new(), ..named.clone() },
+            (View::Camera(camera), _) => NamedCamera::new("", least(*camera)),
+            (View::Splined(_) | View::Equirectangular(_), _) => return Ok(None),
+        };
         let given = Given { source: &source, pitch_um, base_mm: None, order: TangentialOrder::OpenCv, output: None };
         let goal = goal(convention, &given).map_err(|error| match no_target(error) {
             Failure::Input(message) => Failure::Input(message.replace("--to", "--camera-format")),
@@ -127,15 +137,15 @@ impl Views {
 }
 
 /// The first camera of a file, which is of images of the size `stated` if it does not say it, for images of the size `given`, where that is known.
-fn taken(path: &Path, stated: Option<ImageSize>, given: Option<ImageSize>, command: &Undistort) -> Result<Camera, Failure> {
+fn taken(path: &Path, stated: Option<ImageSize>, given: Option<ImageSize>, command: &Undistort) -> Result<NamedCamera, Failure> {
     // Beside photographs, whose size is known, a size that the user states is that of the camera.
     let other_size = command.size.is_none() || given.is_none_or(|given| Some(given) == command.size);
-    let named = inputs::first(path, &ReadOptions { size: stated, other_size, ..ReadOptions::default() })?;
+    let named = inputs::first_or_splines(path, &ReadOptions { size: stated, other_size, ..ReadOptions::default() })?;
     let ImageSize { width, height } = named.camera.size();
     match given {
         // Of a photograph that is turned more is said where all photographs are looked at.
-        Some(given) if (given.width, given.height) != (height, width) => Ok(for_images(path, &named, given, command.same_camera)?.camera),
-        _ => Ok(named.camera),
+        Some(given) if (given.width, given.height) != (height, width) => for_images(path, &named, given, command.same_camera),
+        _ => Ok(named),
     }
 }
 
@@ -156,6 +166,7 @@ fn sized(view: &View) -> String {
             let is_plain = named == "opencv" && parameters.iter().all(|p| ["fx", "fy", "cx", "cy"].contains(&p.name) || p.value == 0.0);
             if is_plain { "pinhole" } else { named }
         }
+        View::Splined(_) => "splined",
         View::Equirectangular(_) => "equirectangular",
     };
     let Some(Fields { horizontal, vertical, diagonal }) = fields(view) else { return format!("{width} x {height} px, {what}") };

@@ -112,11 +112,21 @@ impl Splined {
 }
 
 impl PlaneMap for Splined {
-    fn map(&self, [ux, uy]: [f64; 2]) -> ValueAndDerivatives {
+    fn map(&self, u: [f64; 2]) -> ValueAndDerivatives {
         let per_u = self.per_u();
-        let centre = |count: usize| (count - 1) as f64 / 2.0;
-        let along = Basis::new(self.order, ux * per_u + centre(self.columns), self.columns);
-        let down = Basis::new(self.order, uy * per_u + centre(self.rows), self.rows);
+        self.map_by((u, per_u), &self.bases(u, per_u))
+    }
+}
+
+impl Splined {
+    /// The bases along and down the grid at u, of [`Self::per_u`], whose tangent costs as much as they do.
+    pub(super) fn bases(&self, u: [f64; 2], per_u: f64) -> [Basis; 2] {
+        let [along, down] = self.grid(u, per_u);
+        [Basis::new(self.order, along, self.columns), Basis::new(self.order, down, self.rows)]
+    }
+
+    /// The map at u with its bases there.
+    pub(super) fn map_by(&self, ([ux, uy], per_u): ([f64; 2], f64), [along, down]: &[Basis; 2]) -> ValueAndDerivatives {
         let (mut value, mut by) = ([ux, uy], [[1.0, 0.0], [0.0, 1.0]]);
         for row in 0..=self.order {
             for column in 0..=self.order {

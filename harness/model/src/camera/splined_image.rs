@@ -1,7 +1,6 @@
 //! Where splines picture a ray, and on which control points that depends.
 
-use super::plane_map::PlaneMap;
-use super::splined::{Basis, Splined, stereographic};
+use super::splined::{Splined, stereographic};
 use super::{ImageSize, NoCounterpart, Ray};
 use crate::PixelPoint;
 
@@ -43,9 +42,10 @@ impl Splined {
     /// [`NoCounterpart::Behind`] of a ray that points backwards along the axis, or is none.
     pub fn picture(&self, ray: Ray) -> Result<SplinedImage, NoCounterpart> {
         let (u, by_u) = stereographic(ray)?;
-        let (distorted, by) = self.map(u);
-        let [along, down] = self.grid(u);
-        let (along, down) = (Basis::new(self.order, along, self.columns), Basis::new(self.order, down, self.rows));
+        let per_u = self.per_u();
+        let bases = self.bases(u, per_u);
+        let (distorted, by) = self.map_by((u, per_u), &bases);
+        let [along, down] = bases;
         Ok(SplinedImage {
             point: self.pixel(distorted),
             by_ray: [0, 1].map(|row| std::array::from_fn(|i| self.core[row] * (by[row][0] * by_u[0][i] + by[row][1] * by_u[1][i]))),
@@ -67,7 +67,7 @@ impl Splined {
     pub fn cell(&self, ray: Ray) -> Option<[usize; 2]> {
         let (u, _) = stereographic(ray).ok()?;
         let (before, cells) = (0.5 * (self.order - 1) as f64, self.cells());
-        let at = self.grid(u).map(|at| at - before);
+        let at = self.grid(u, self.per_u()).map(|at| at - before);
         let inside = (0..2).all(|axis| at[axis] >= 0.0 && at[axis] <= cells[axis] as f64);
         inside.then(|| [0, 1].map(|axis| (at[axis] as usize).min(cells[axis] - 1)))
     }
@@ -80,9 +80,9 @@ impl Splined {
     }
 
     /// Coordinates in the grid, whose first control point is at (0, 0).
-    fn grid(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn grid(&self, [x, y]: [f64; 2], per_u: f64) -> [f64; 2] {
         let centre = |count: usize| 0.5 * (count - 1) as f64;
-        [x * self.per_u() + centre(self.columns), y * self.per_u() + centre(self.rows)]
+        [x * per_u + centre(self.columns), y * per_u + centre(self.rows)]
     }
 }
 

@@ -90,12 +90,7 @@ fn left_out(found: &SplinedCalibration<'_>) -> Vec<String> {
         lines.push(format!("take no part: {} ({why})", few(&names)));
     }
     if !found.found.is_empty() {
-        let network = &found.prepared.splines.network;
-        let name = |found: &calibench_adjust::Found| {
-            let o = &network.observations[found.observation];
-            format!("{} in {}", network.points[o.point].name, network.images[o.image].name)
-        };
-        let names: Vec<String> = found.found.iter().map(name).collect();
+        let names: Vec<String> = found.found.iter().map(|left| found.prepared.splines.name_of(left.observation)).collect();
         lines.push(format!("gross errors: {} image points were left out: {}", names.len(), few(&names)));
     }
     lines

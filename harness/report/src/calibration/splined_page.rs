@@ -74,9 +74,10 @@ fn uncertainty(found: &SplinedCalibration<'_>, map: &[SplinedPlace]) -> Option<F
     plot.dots(map.iter().filter(|place| !place.is_held).map(|place| (place.at.x, place.at.y)).collect());
     let levels: Vec<(f64, String)> = scale.levels().into_iter().map(|level| (scale.part(level), plain(level))).collect();
     plot.shades("px (log scale)", &levels);
-    let caption = "Standard deviation (2D) of the image of a point far away, after the rotation that makes up for most where image points hold the splines. \
+    let caption =
+        "Standard deviation (2D) of the image of a point far away, after the rotation that makes up for most at the image points. \
                    Places with a dot have no image point in their cell of the splines: the uncertainty there is that of the prior."
-        .to_owned();
+            .to_owned();
     let px = |px: Option<f64>| px.map_or_else(|| "nothing".into(), plain);
     let remark = format!(
         "px, RMS where image points hold the splines: {}; over the frame: {}",

@@ -119,7 +119,7 @@ fn honesty(league: &League) -> String {
     }
     format!(
         "Classes by what the mean square of errors in stated standard deviations is there; the RMS of residuals as each states it where every coordinate has 0.1 px of noise \
-         (0.14 is a distance, 0.10 a coordinate, less is without redundancy); the median time of a calibration, one thread.\n\n{}",
+         (0.14 is a distance, 0.10 a coordinate, less is without redundancy); the median of a calibration's processor time.\n\n{}",
         rows.render()
     )
 }

@@ -25,7 +25,7 @@ fn frames_hold_what_they_say() {
         (fisheye(130.0), Target::Equirectangular),
     ] {
         let from = View::Camera(camera);
-        let view = |frame| framed(&camera, target, frame, 1.0).unwrap();
+        let view = |frame| framed(&View::Camera(camera), target, frame, 1.0).unwrap();
         let [keep, all, crop] = [Frame::Keep, Frame::All, Frame::Crop].map(view);
         assert_eq!(keep.size(), camera.size());
         // All is in the largest, and the smallest has no empty pixel; a larger one would.
@@ -46,7 +46,7 @@ fn frames_hold_what_they_say() {
 #[test]
 fn the_crop_cannot_grow() {
     let (camera, from) = (barrel(-0.3), View::Camera(barrel(-0.3)));
-    let View::Camera(Camera::OpenCv(crop)) = framed(&camera, Target::Pinhole, Frame::Crop, 1.0).unwrap() else { panic!() };
+    let View::Camera(Camera::OpenCv(crop)) = framed(&View::Camera(camera), Target::Pinhole, Frame::Crop, 1.0).unwrap() else { panic!() };
     for (x, y) in [(1.0, 0.0), (0.0, 1.0), (0.0, 0.0)] {
         let (mut more, grown) = (crop, u32::from(x == 0.0 && y == 0.0));
         (more.cx, more.cy) = (crop.cx + x, crop.cy + y);
@@ -59,7 +59,7 @@ fn the_crop_cannot_grow() {
 #[test]
 fn scale_is_of_outer_edges() {
     let camera = barrel(-0.1);
-    let half = framed(&camera, Target::Pinhole, Frame::Keep, 0.5).unwrap();
+    let half = framed(&View::Camera(camera), Target::Pinhole, Frame::Keep, 0.5).unwrap();
     assert_eq!(half.size(), ImageSize { width: 320, height: 240 });
     let axis = half.image(Ray::from_tangent(0.0, 0.0)).unwrap();
     assert!(axis.distance(PixelPoint::new(154.75, 122.25)) < 1e-9, "{axis:?}");
@@ -77,10 +77,10 @@ fn fields_are_angles() {
 
 #[test]
 fn what_cannot_be_is_refused() {
-    let wide = framed(&fisheye(130.0), Target::Pinhole, Frame::All, 1.0).unwrap_err().to_string();
+    let wide = framed(&View::Camera(fisheye(130.0)), Target::Pinhole, Frame::All, 1.0).unwrap_err().to_string();
     assert!(wide.contains("158.") || wide.contains("off its axis"), "{wide}");
-    assert!(matches!(framed(&barrel(0.0), Target::Pinhole, Frame::Keep, 1e-4), Err(FrameError::Size { .. })));
-    assert!(matches!(framed(&barrel(0.0), Target::Pinhole, Frame::Keep, 200.0), Err(FrameError::Size { .. })));
+    assert!(matches!(framed(&View::Camera(barrel(0.0)), Target::Pinhole, Frame::Keep, 1e-4), Err(FrameError::Size { .. })));
+    assert!(matches!(framed(&View::Camera(barrel(0.0)), Target::Pinhole, Frame::Keep, 200.0), Err(FrameError::Size { .. })));
 }
 
 #[test]

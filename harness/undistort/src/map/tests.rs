@@ -42,7 +42,7 @@ fn places_are_exact_to_a_thousandth_of_a_pixel() {
         let from = View::Camera(camera);
         for target in [Target::Pinhole, Target::Equirectangular] {
             for frame in [Frame::Keep, Frame::All, Frame::Crop] {
-                let Ok(to) = framed(&camera, target, frame, 1.0) else {
+                let Ok(to) = framed(&View::Camera(camera), target, frame, 1.0) else {
                     assert!(target == Target::Pinhole && frame == Frame::All, "{name}");
                     continue;
                 };
@@ -61,7 +61,7 @@ fn places_are_exact_to_a_thousandth_of_a_pixel() {
 fn a_smooth_map_takes_few_places() {
     let size = ImageSize { width: 4000, height: 3000 };
     let camera = opencv(&[-0.25, 0.06, 0.001, -0.0007, 0.0], size);
-    let map = Map::between(&View::Camera(camera), &framed(&camera, Target::Pinhole, Frame::Keep, 1.0).unwrap());
+    let map = Map::between(&View::Camera(camera), &framed(&View::Camera(camera), Target::Pinhole, Frame::Keep, 1.0).unwrap());
     assert!(map.singles() == 0.0, "{}", map.singles());
 }
 
@@ -70,7 +70,7 @@ fn what_has_no_ray_comes_from_nowhere() {
     // A camera that folds inside its frame, seen from a sphere; and what lies behind a plane.
     let size = ImageSize { width: 320, height: 240 };
     let folded = View::Camera(opencv(&[-0.9], size));
-    let sphere = framed(&fisheye(size), Target::Equirectangular, Frame::All, 1.0).unwrap();
+    let sphere = framed(&View::Camera(fisheye(size)), Target::Equirectangular, Frame::All, 1.0).unwrap();
     let map = Map::between(&folded, &sphere);
     let (most, _) = compared(&folded, &sphere);
     assert!(most < 1e-3 && map.coverage() > 0.05 && map.coverage() < 0.9, "{most} {}", map.coverage());
@@ -84,7 +84,7 @@ fn what_has_no_ray_comes_from_nowhere() {
 fn the_mask_is_what_has_places_and_rows_are_enough() {
     let size = ImageSize { width: 333, height: 250 };
     let camera = opencv(&[-0.3, 0.1], size);
-    let map = Map::between(&View::Camera(camera), &framed(&camera, Target::Pinhole, Frame::All, 0.8).unwrap());
+    let map = Map::between(&View::Camera(camera), &framed(&View::Camera(camera), Target::Pinhole, Frame::All, 0.8).unwrap());
     let (width, height) = (map.size().width as usize, map.size().height as usize);
     let mask = map.mask(0..height);
     assert_eq!(mask.iter().map(|level| u64::from(*level) / 255).sum::<u64>(), map.covered());
