@@ -68,7 +68,8 @@ def calibrate(task):
     inputs = model.optimization_inputs()
     observed = inputs["observations_board"]
     used = observed[..., 2] > 0
-    frames = inputs["frames_rt_toref"] if "frames_rt_toref" in inputs else inputs["rt_ref_frame"]
+    # 2.5 has a message under the name that 2.2 has.
+    frames = inputs["rt_ref_frame"] if "rt_ref_frame" in inputs else inputs["frames_rt_toref"]
     answer = {
         "rms_px": float(re.findall("## RMS error: (\\S+)", printed.getvalue())[-1]),
         "scaled": "sigma0",

@@ -141,6 +141,34 @@ fn the_core_is_solved_for() {
     }
 }
 
+/// Points go to a plane and back by the splines themselves.
+#[test]
+fn points_are_undistorted_by_splines() {
+    let folder = example();
+    answer(folder.path(), &[&EXAMPLE[..], &["-o", "camera.cameramodel"]].concat());
+    let points = |name: &str| -> Vec<[f64; 2]> {
+        let table = csv::Reader::from_path(folder.path().join(name)).unwrap().into_records().map(Result::unwrap).collect::<Vec<_>>();
+        table.iter().map(|row| [2, 3].map(|k| row[k].parse::<f64>().unwrap())).collect()
+    };
+    for words in [&["points.csv", "-o", "flat.csv"][..], &["flat.csv", "--redistort", "-o", "back.csv"]] {
+        let output = run(folder.path(), &[&["undistort"], words, &["--camera", "camera.cameramodel", "--frame", "keep"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let camera = read_camera(&folder.path().join("camera.cameramodel")).unwrap().cameras.remove(0).splines.unwrap().model;
+    let (given, flat, back) = (points("points.csv"), points("flat.csv"), points("back.csv"));
+    assert_eq!((given.len(), given.len()), (flat.len(), back.len()));
+    for (given, back) in given.iter().zip(&back) {
+        assert!((given[0] - back[0]).hypot(given[1] - back[1]) < 1e-5, "{given:?} {back:?}");
+    }
+    // In a plane differences are those of tangents.
+    let tangent = |at: &[f64; 2]| {
+        let ray = camera.unproject(PixelPoint::new(at[0], at[1])).unwrap();
+        -ray.x / ray.z
+    };
+    let scale = |i: usize, j: usize| (flat[i][0] - flat[j][0]) / (tangent(&given[i]) - tangent(&given[j]));
+    assert!((scale(0, 60) / scale(1200, 2000) - 1.0).abs() < 1e-6, "{} {}", scale(0, 60), scale(1200, 2000));
+}
+
 #[test]
 fn gross_errors_are_left_out_by_name() {
     let folder = example();

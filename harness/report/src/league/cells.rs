@@ -69,6 +69,8 @@ pub struct Cell {
     pub ended: [usize; 4],
     /// How many were wrong and said nothing.
     pub silent: usize,
+    /// Which of them were, trial by trial.
+    silences: Vec<bool>,
     /// Distance from the true camera over the frame of each trial, px, and of photographs that of points from where they are predicted; `None` without a camera that
     /// can be compared.
     pub frames: Vec<Option<f64>>,
@@ -100,6 +102,7 @@ impl Cell {
             self.ended[place] += 1;
         }
         self.silent += usize::from(row.silent);
+        self.silences.push(row.silent);
         self.frames.push(row.frame.or(row.held_out));
         self.across.extend(row.across);
         self.rms.extend(row.rms);
@@ -234,9 +237,10 @@ impl League {
         (0..self.calibrators.len()).filter_map(move |one| Some((one, self.cell(class, one).filter(|cell| cell.trials > 0)?)))
     }
 
-    /// The calibrator with the least median in a class.
+    /// The calibrator with the least median over the trials of a class that all were asked about.
     pub fn best(&self, class: usize) -> Option<usize> {
-        let median = |cell: &Cell| cell.frame().map_or(f64::INFINITY, |(median, _)| median);
+        let trials = self.asked(class).map(|(_, cell)| cell.trials).min()?;
+        let median = |cell: &Cell| median(cell.frames[..trials].iter().copied()).unwrap_or(f64::INFINITY);
         let best = self.asked(class).min_by(|a, b| median(a.1).total_cmp(&median(b.1)))?;
         median(best.1).is_finite().then_some(best.0)
     }
@@ -264,17 +268,19 @@ impl League {
         if beyond.len() < 2 { 0.0 } else { paired_t(&beyond).growth }
     }
 
-    /// The calibrators that are as good as the best of a class: not shown to be worse by more than [`AS_GOOD`] (Holm, [`ALPHA`]), with as many cameras, and never wrong in
-    /// silence.
+    /// The calibrators that are as good as the best of a class: not shown to be worse by more than [`AS_GOOD`] (Holm, [`ALPHA`]), with as many cameras and never wrong in
+    /// silence, as far as both were asked about the same trials.
     pub fn as_good(&self, class: usize) -> Vec<usize> {
         let Some(best) = self.best(class) else { return Vec::new() };
-        let cameras = |cell: &Cell| cell.frames.iter().flatten().count();
-        let most = self.cell(class, best).map_or(0, cameras);
+        let Some(first) = self.cell(class, best) else { return Vec::new() };
+        let cameras = |cell: &Cell, trials: usize| cell.frames.iter().take(trials).flatten().count();
         let others: Vec<usize> = self.asked(class).map(|(one, _)| one).filter(|one| *one != best).collect();
         let p = holm(&others.iter().map(|one| self.no_worse(class, [*one, best])).collect::<Vec<_>>());
         let is_as_good = |(one, cell): &(usize, &Cell)| {
             let near = others.iter().position(|other| other == one).is_none_or(|place| p[place] > ALPHA);
-            near && cell.silent == 0 && cameras(cell) >= most
+            let trials = cell.trials.min(first.trials);
+            let is_silent = cell.silences.iter().take(trials).any(|silent| *silent);
+            near && !is_silent && cameras(cell, trials) >= cameras(first, trials)
         };
         self.asked(class).filter(is_as_good).map(|(one, _)| one).collect()
     }

@@ -30,6 +30,11 @@ impl<'a> Trials<'a> {
         &self.study.model
     }
 
+    /// Whether image points are drawn, so that another trial costs next to nothing.
+    pub fn are_drawn(&self) -> bool {
+        self.study.drawn.is_some()
+    }
+
     /// What calibrators are told beside the points, as text.
     pub fn told(&self) -> String {
         let Calibrators { model, sigma_px, drawn, start_f, distance, faults, .. } = self.study;

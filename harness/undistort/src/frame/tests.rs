@@ -1,4 +1,4 @@
-use calibench_model::camera::{OpenCv, OpenCvFisheye};
+use calibench_model::camera::{Camera, CameraModel, OpenCv, OpenCvFisheye, Splined};
 
 use super::*;
 use crate::Map;
@@ -89,4 +89,34 @@ fn the_largest_rectangle_is_found() {
     let filled: Vec<bool> = picture.iter().flat_map(|line| line.chars().map(|c| c == '#')).collect();
     assert_eq!(largest(&filled, 5), Some([1, 1, 4, 3]));
     assert_eq!(largest(&[false; 6], 3), None);
+}
+
+/// Splines whose control points are zero are a stereographic fisheye: on the axis a radian has f px, and beside it r = 2 f tan(angle / 2).
+#[test]
+fn splines_are_taken_as_they_are() {
+    let size = ImageSize { width: 600, height: 400 };
+    let mut splined = Splined::flat(size, [250.0, 250.0, 299.5, 199.5], 3, [16, 12], 150.0);
+    let flat = View::Splined(splined.clone().into());
+    let sphere = framed(&flat, Target::Equirectangular, Frame::Keep, 1.0).unwrap();
+    for degrees in [-50.0_f64, -20.0, 0.0, 35.0] {
+        let angle = degrees.to_radians();
+        let at = sphere.place_in(&flat, PixelPoint::new(299.5 + 250.0 * angle, 199.5)).unwrap();
+        assert!((at.x - (299.5 + 500.0 * (0.5 * angle).tan())).abs() < 1e-9 && (at.y - 199.5).abs() < 1e-9, "{at:?}");
+    }
+    // A dent: the map has what the splines have, pixel by pixel.
+    splined.control[5 * 16 + 9] = [0.03, -0.02];
+    let dented = View::Splined(splined.clone().into());
+    let plane = framed(&dented, Target::Pinhole, Frame::Crop, 1.0).unwrap();
+    let map = Map::between(&dented, &plane);
+    assert_eq!(map.covered(), u64::from(plane.size().width) * u64::from(plane.size().height));
+    let mut dent = 0.0_f64;
+    for (column, row) in
+        (0..plane.size().width as usize).step_by(17).flat_map(|x| (0..plane.size().height as usize).step_by(13).map(move |y| (x, y)))
+    {
+        let ray = plane.ray(PixelPoint::new(column as f64, row as f64)).unwrap();
+        let (found, truth) = (map.place(column, row).unwrap(), splined.project(ray).unwrap());
+        assert!(found.distance(truth) < 1e-3, "{column} {row}: {found:?} {truth:?}");
+        dent = dent.max(truth.distance(flat.image(ray).unwrap()));
+    }
+    assert!(dent > 2.0, "{dent}");
 }
