@@ -22,6 +22,12 @@ pub(crate) const BLOCK: usize = 2 * WIDE;
 /// [`BLOCK`] numbers.
 pub(crate) type Block = [f32; BLOCK];
 
+/// The first or the second half.
+#[inline(always)]
+pub(crate) fn half_of(block: &Block, half: usize) -> &Wide {
+    &block.as_chunks::<WIDE>().0[half & 1]
+}
+
 /// The `N` values from `first` on.
 #[inline(always)]
 pub(crate) fn side_by_side<T, const N: usize>(values: &[T], first: usize) -> &[T; N] {

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use calibench_model::quadrature::gauss_legendre;
 
 use crate::blurred_step::{DENSITY, edge, exp_minus, step};
-use crate::lanes::Real;
+use crate::lanes::{BLOCK, Block, Real, WIDE, half_of};
 pub(super) use crate::photosite::Fidelity;
 use crate::photosite::Square;
 
@@ -81,6 +81,21 @@ impl<T: Real, const N: usize> Field<T, N> {
     pub(super) fn constant(value: [T; N]) -> Self {
         let zero = [T::of(0.0); N];
         Self { value, position: [zero; 2], normals: [zero; 2], variance: zero, curvature: [zero; 2] }
+    }
+}
+
+impl Field<f32, BLOCK> {
+    /// Of the pixels of one half.
+    #[inline(always)]
+    pub(super) fn half(&self, half: usize) -> Field<f32, WIDE> {
+        let of = |block: &Block| *half_of(block, half);
+        Field {
+            value: of(&self.value),
+            position: [of(&self.position[0]), of(&self.position[1])],
+            normals: [of(&self.normals[0]), of(&self.normals[1])],
+            variance: of(&self.variance),
+            curvature: [of(&self.curvature[0]), of(&self.curvature[1])],
+        }
     }
 }
 
