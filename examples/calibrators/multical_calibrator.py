@@ -5,6 +5,7 @@ import importlib.metadata
 import tempfile
 
 import asked
+import multical.camera
 import numpy as np
 from multical import tables
 from multical.board import CharucoBoard
@@ -14,6 +15,22 @@ from multical.optimization.calibration import error_stats
 from multical.workspace import Workspace
 from structs.struct import struct
 
+
+
+class OneThread:
+    """In place of multiprocessing's ThreadPool: every system has one thread, and its semaphores would be files outside of the folder that a program may write to."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def starmap(self, function, arguments):
+        return [function(*of) for of in arguments]
+
+
+multical.camera.ThreadPool = OneThread
 options = argparse.ArgumentParser()
 options.add_argument("--every-view", action="store_true", help="in place of its choice of 50 at most, which takes no set of views with equally many points")
 options = options.parse_args()

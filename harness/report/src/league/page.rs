@@ -8,6 +8,8 @@ use super::versions::pairs;
 use crate::markdown::{MarkdownTable, contents, fixed};
 use crate::plot::Figure;
 
+/// Systems that the first sentence names.
+const LEADS: usize = 5;
 /// The class in which nothing is wrong.
 const GOOD: &str = "good";
 /// What ours are called.
@@ -45,10 +47,21 @@ fn counts(league: &League) -> (usize, usize) {
 /// The page's answer in a sentence or two.
 fn answer(league: &League) -> String {
     let all = league.classes.len();
+    let good: Vec<Vec<usize>> = (0..all).map(|class| league.as_good(class)).collect();
     let mut leads: Vec<(usize, usize)> =
-        (0..league.calibrators.len()).map(|one| (one, (0..all).filter(|class| league.as_good(*class).contains(&one)).count())).collect();
+        (0..league.calibrators.len()).map(|one| (one, good.iter().filter(|places| places.contains(&one)).count())).collect();
     leads.sort_by_key(|(place, count)| (std::cmp::Reverse(*count), *place));
-    let told: Vec<String> = leads.iter().take(3).map(|(one, count)| format!("`{}` in {count}", league.calibrators[*one].name)).collect();
+    // Of each system that call which is in most.
+    let mut systems: Vec<&str> = Vec::new();
+    leads.retain(|(one, count)| {
+        let system = league.calibrators[*one].system.as_str();
+        *count > 0 && !systems.contains(&system) && {
+            systems.push(system);
+            true
+        }
+    });
+    let told: Vec<String> =
+        leads.iter().take(LEADS).map(|(one, count)| format!("`{}` in {count}", league.calibrators[*one].name)).collect();
     let silent = |place: &usize| (0..all).filter_map(|class| league.cell(class, *place)).map(|cell| cell.silent).sum::<usize>() > 0;
     let systems = (0..league.calibrators.len()).filter(silent).count();
     format!(
@@ -67,20 +80,45 @@ fn which(league: &League) -> String {
             let doubted = doubted.map_or_else(String::new, |cell| format!(" (doubts {:.0} %)", cell.percent(cell.ended[1])));
             format!("`{}`{doubted}", league.calibrators[*one].name)
         };
-        let names = |places: Vec<usize>| places.iter().map(name).collect::<Vec<_>>().join(", ");
         let mut silent: Vec<(usize, f64)> =
             league.asked(place).filter(|(_, cell)| cell.silent > 0).map(|(one, cell)| (one, cell.percent(cell.silent))).collect();
         silent.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let told = silent.iter().map(|(one, percent)| format!("`{}` {percent:.0} %", league.calibrators[*one].name)).collect::<Vec<_>>();
+        let percent = |one: &usize| {
+            let share = silent.iter().find(|(place, _)| place == one).map_or(0.0, |(_, percent)| *percent);
+            format!("`{}` {share:.0} %", league.calibrators[*one].name)
+        };
+        let told = by_system(league, &silent.iter().map(|(one, _)| *one).collect::<Vec<_>>(), percent);
         rows.row([
             format!("[{}]({CLASSES}#{})", short(&class.class), crate::markdown::anchor(short(&class.class))),
             format!("`{}`", class.model),
             best.map_or_else(|| "none".to_owned(), |(median, [low, high])| format!("{} ({} to {})", px(median), px(low), px(high))),
-            names(league.as_good(place)),
-            told.join(", "),
+            by_system(league, &league.as_good(place), name),
+            told,
         ]);
     }
     rows.render()
+}
+
+/// Names, system by system: where there are more than two of one, that of the newest version, and how many more there are.
+fn by_system(league: &League, places: &[usize], name: impl Fn(&usize) -> String) -> String {
+    let mut systems: Vec<&str> = Vec::new();
+    for one in places.iter().map(|place| league.calibrators[*place].system.as_str()) {
+        if !systems.contains(&one) {
+            systems.push(one);
+        }
+    }
+    let of = |system: &&str| {
+        let own: Vec<usize> = places.iter().copied().filter(|place| league.calibrators[*place].system == **system).collect();
+        let newest = own.iter().max_by(|a, b| {
+            let [a, b] = [a, b].map(|place| &league.calibrators[**place]);
+            a.version.cmp(&b.version).then(b.name.len().cmp(&a.name.len())).then(b.name.cmp(&a.name))
+        });
+        match newest {
+            Some(newest) if own.len() > 2 => format!("{} and {} more of {system}", name(newest), own.len() - 1),
+            _ => own.iter().map(&name).collect::<Vec<_>>().join(", "),
+        }
+    };
+    systems.iter().map(of).collect::<Vec<_>>().join(", ")
 }
 
 fn honesty(league: &League) -> String {

@@ -60,16 +60,33 @@ fn the_best_and_who_is_as_good_as_it() {
     assert!(league.cell(0, place("other")).unwrap().unavailable.is_some());
 }
 
+/// Of a version as its name has it.
+fn all_of(name: &str) -> Vec<Answered> {
+    let version = name.split('_').nth(1).unwrap();
+    (0..20)
+        .map(|trial| Answered { version: version.into(), ..row(trial, "calibrated", Some(1.0 + 0.1 * trial as f64), Some(1.0), false) })
+        .collect()
+}
+
 #[test]
 fn pages_name_the_best_the_silent_and_who_was_not_asked() {
     let league = league();
     let figure = picture::figure(&league);
     let first = page::first(&league, "", &figure);
-    for words in
-        ["`best` in 1, `near` in 1", "1 of 6 calibrators are wrong and silent", "`mute` 5 %", "league.png", "Of no system two versions"]
-    {
+    for words in [
+        "never wrong without a word: `best` in 1 of 1 classes",
+        "| `best`, `near` ",
+        "1 of 6 calibrators are wrong and silent",
+        "`mute` 5 %",
+        "league.png",
+        "Of no system two versions",
+    ] {
         assert!(first.contains(words), "{words}: {first}");
     }
+    let more: Vec<(String, Vec<Answered>)> = ["a_1", "a_2", "a_2_more"].map(|name| (name.to_owned(), all_of(name))).to_vec();
+    let class = Class { class: "league/good".into(), why: "Why.".into(), model: "opencv5".into(), photographs: false };
+    let first = page::first(&League::new(vec![class], &more), "", &figure);
+    assert!(first.contains("| `a_2` and 2 more of s "), "{first}");
     let classes = page::classes(&league);
     for words in ["## good", "Not asked, for want of the model: `other`.", "overconfident", "2.00 (2.00 to 2.00)"] {
         assert!(classes.contains(words), "{words}: {classes}");
