@@ -211,7 +211,7 @@ fn many_gross_errors_hide_none_and_spoil_none() {
     let (code, found) = answer(folder.path(), &EXAMPLE);
     let name = |one: &Value| (one["image"].as_str().unwrap().to_owned(), one["target"].as_str().unwrap().to_owned());
     let rejected: BTreeSet<(String, String)> = found["rejected"].as_array().unwrap().iter().map(name).collect();
-    assert!(wrong.len() > 50 && rejected == wrong, "{} {:?}", wrong.len(), rejected.symmetric_difference(&wrong));
+    assert!(wrong.len() > 50 && rejected == wrong, "{} {:?}", wrong.len(), rejected.symmetric_difference(&wrong).collect::<Vec<_>>());
     // Two in a hundred are worth a doubt.
     assert_eq!((code, found["doubted"].as_array().unwrap().len()), (Some(3), 1), "{}", found["doubts"]);
 }

@@ -50,7 +50,30 @@ impl<'n> Search<'n> {
             search.kept = beyond(&better)?;
             search.solution = better;
         }
-        Ok(search)
+        search.taking_back()
+    }
+
+    /// Takes those back that fit what was found without them, as some do that were long because of others, if all that is in use fits then as well.
+    fn taking_back(mut self) -> Result<Self, CalibrationError> {
+        let Some((scale, critical)) = limits(&self.solution.lengths()?) else { return Ok(self) };
+        let (observations, residuals) = (&self.solution.network().network.observations, self.solution.residuals());
+        // What is predicted is less certain than what is measured: below the limit by its own error alone it is below it.
+        let fits = |found: &Found| {
+            let white = residuals[found.observation].v.map(|v| observations[found.observation].precision.whitened(v));
+            white.is_some_and(|[x, y]| x.hypot(y) < critical * scale)
+        };
+        let (back, out): (Vec<Found>, Vec<Found>) = self.left_out.iter().copied().partition(fits);
+        if back.is_empty() {
+            return Ok(self);
+        }
+        let left_out: Vec<usize> = out.iter().map(|found| found.observation).collect();
+        if let Ok(solution) = self.solution.without(&left_out) {
+            let kept = beyond(&solution)?;
+            if kept.len() <= self.kept.len() {
+                self = Self { solution, left_out: out, kept };
+            }
+        }
+        Ok(self)
     }
 
     /// Those in use that are not long because of one that is longer.
@@ -73,14 +96,19 @@ impl<'n> Search<'n> {
 
 /// The image points whose residuals, by their own covariances, no normal error would have, the longest first; none where residuals are no more than rounding.
 fn beyond(solution: &SplinedSolution<'_>) -> Result<Vec<Found>, CalibrationError> {
-    let lengths: Vec<(usize, f64)> = solution.lengths()?.into_iter().filter_map(|(index, length)| Some((index, length?))).collect();
-    let scale = scale_of(lengths.iter().map(|(_, length)| [*length, 0.0]));
-    let Some(scale) = scale.filter(|scale| !is_rounding(Some(*scale))) else { return Ok(Vec::new()) };
-    let critical = (2.0 * (lengths.len() as f64 / BY_CHANCE).ln()).sqrt();
-    let found = |(observation, length): (usize, f64)| Found { observation, w: length / scale, critical, left_out: false };
-    let mut beyond: Vec<Found> = lengths.into_iter().map(found).filter(|found| found.w > critical).collect();
+    let lengths = solution.lengths()?;
+    let Some((scale, critical)) = limits(&lengths) else { return Ok(Vec::new()) };
+    let of = |(observation, length): (usize, Option<f64>)| Some(Found { observation, w: length? / scale, critical, left_out: false });
+    let mut beyond: Vec<Found> = lengths.into_iter().filter_map(of).filter(|found| found.w > critical).collect();
     beyond.sort_by(|a, b| b.w.total_cmp(&a.w));
     Ok(beyond)
+}
+
+/// The scale of lengths by their median, and the length in units of it that one of [`BY_CHANCE`] sets of as many has; `None` where residuals are no more than rounding.
+fn limits(lengths: &[(usize, Option<f64>)]) -> Option<(f64, f64)> {
+    let known = || lengths.iter().filter_map(|(_, length)| *length);
+    let scale = scale_of(known().map(|length| [length, 0.0])).filter(|scale| !is_rounding(Some(*scale)))?;
+    Some((scale, (2.0 * (known().count() as f64 / BY_CHANCE).ln()).sqrt()))
 }
 
 /// Whether image points of two cells depend on the same control points.
