@@ -100,7 +100,8 @@ impl League {
             }
             let what = format!("{} {}", bout.listed.name, class.name());
             let progress = Progress::start(&what, class.trials(), context.quiet);
-            let found = class.rows(bout, &digest, &|| progress.step())?;
+            let mut found = class.rows(bout, &digest, &|| progress.step())?;
+            found.extend(class.further(bout, &digest, &found, &|| ())?);
             progress.finish(&summary(&found));
             rows.retain(|row| row.class != class.name());
             rows.extend(found);

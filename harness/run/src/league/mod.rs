@@ -72,7 +72,8 @@ impl<'a> Class<'a> {
     fn trials_after(&self, rows: &[Answered]) -> u64 {
         let is_drawn = matches!(&self.told, Told::Views(trials) if trials.are_drawn());
         let is_quick = median(rows.iter().map(|row| row.seconds)).is_some_and(|seconds| seconds < QUICK_S);
-        if is_drawn && is_quick { self.trials().max(QUICK_TRIALS) } else { self.trials() }
+        let is_asked = rows.iter().all(|row| row.status != UNAVAILABLE);
+        if is_drawn && is_asked && is_quick { self.trials().max(QUICK_TRIALS) } else { self.trials() }
     }
 
     /// The model that is asked for.
@@ -106,37 +107,50 @@ impl<'a> Class<'a> {
         whole && mine.iter().all(|row| row.digest == digest && row.version == version)
     }
 
-    /// The rows of one calibrator, trial by trial; one row alone where it has no such model. `step` is called after each trial.
+    /// The rows of one calibrator in the trials that every one gets; one row alone where it has no such model. `step` is called after each trial.
     ///
     /// # Errors
     /// Images that cannot be rendered; in words, a program that can no longer be started.
     pub fn rows(&self, bout: Bout<'_>, digest: &str, step: &(dyn Fn() + Sync)) -> Result<Vec<Answered>, RunError> {
-        let row = |trial: u64, status: &str, message: &str| Answered {
+        if !bout.listed.models.iter().any(|model| model == self.model()) {
+            let message = format!("has no model {}", self.model());
+            return Ok(vec![Answered { status: UNAVAILABLE.to_owned(), message, ..self.blank(bout, digest, 0) }]);
+        }
+        self.of_trials(bout, digest, 0..self.trials(), step)
+    }
+
+    /// The rows of further trials, where the calibrator was so quick in `rows`, which every one gets, that it is asked more often.
+    ///
+    /// # Errors
+    /// As [`Self::rows`].
+    pub fn further(&self, bout: Bout<'_>, digest: &str, rows: &[Answered], step: &(dyn Fn() + Sync)) -> Result<Vec<Answered>, RunError> {
+        self.of_trials(bout, digest, self.trials()..self.trials_after(rows), step)
+    }
+
+    fn of_trials(&self, bout: Bout<'_>, digest: &str, trials: Range<u64>, step: &(dyn Fn() + Sync)) -> Result<Vec<Answered>, RunError> {
+        let one = |trial: u64| {
+            self.plan.go_on()?;
+            let row = self.blank(bout, digest, trial);
+            let (calibrated, row) = match &self.told {
+                Told::Views(trials) => of_trial(trials, bout.listed, row)?,
+                Told::Photographs(photographs) => of_half(photographs, bout.listed, row)?,
+            };
+            step();
+            Ok(with_answer(row, &calibrated))
+        };
+        trials.into_par_iter().map(one).collect()
+    }
+
+    /// The row of a trial without what was answered.
+    fn blank(&self, bout: Bout<'_>, digest: &str, trial: u64) -> Answered {
+        Answered {
             class: self.name().to_owned(),
             digest: digest.to_owned(),
             system: bout.listed.system.clone(),
             version: bout.version.to_owned(),
             trial,
-            status: status.to_owned(),
-            message: message.to_owned(),
             ..Answered::default()
-        };
-        if !bout.listed.models.iter().any(|model| model == self.model()) {
-            return Ok(vec![row(0, UNAVAILABLE, &format!("has no model {}", self.model()))]);
         }
-        let one = |trial: u64| {
-            self.plan.go_on()?;
-            let (calibrated, row) = match &self.told {
-                Told::Views(trials) => of_trial(trials, bout.listed, row(trial, "", ""))?,
-                Told::Photographs(photographs) => of_half(photographs, bout.listed, row(trial, "", ""))?,
-            };
-            step();
-            Ok(with_answer(row, &calibrated))
-        };
-        let of = |trials: Range<u64>| trials.into_par_iter().map(one).collect::<Result<Vec<_>, RunError>>();
-        let mut rows = of(0..self.trials())?;
-        rows.extend(of(self.trials()..self.trials_after(&rows))?);
-        Ok(rows)
     }
 }
 
