@@ -102,6 +102,8 @@ pub struct ReadOptions {
     pub ignore: Vec<String>,
     /// A file may state another size than [`Self::size`]: its own holds.
     pub other_size: bool,
+    /// Splines are taken as they are, as [`NamedCamera::splined`] has them: no camera of another model is fitted, which takes seconds.
+    pub splines_alone: bool,
     /// The name of the camera matrix, in files of matrices under names of one's own.
     pub matrix: Option<String>,
     /// The name of its coefficients of distortion, or `none` for a camera without; of a matrix in a .npy that file's beside it.
@@ -112,7 +114,7 @@ impl ReadOptions {
     /// What reads again a file that was written in `format` of a camera of `size`.
     pub fn of_written(format: &CameraFormat, size: ImageSize) -> Self {
         let (size, lens) = ((!format.states_size).then_some(size), format.lens_is_open.then_some(Lens::Brown));
-        Self { size, lens, ..Self::default() }
+        Self { size, lens, splines_alone: true, ..Self::default() }
     }
 
     /// The size that the file states, or else the one given.

@@ -40,17 +40,8 @@ pub fn camera_for(path: &Path, size: Option<ImageSize>, is_same: bool) -> Result
     Ok(size.map_or_else(|| Ok(named.clone()), |size| for_images(path, &named, size, is_same))?.camera)
 }
 
-/// The first camera of a file, of no other model than it says.
+/// The first camera of a file; of splines, for those who do not take these as they are, another camera is to be near them.
 pub fn first(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
-    let first = first_or_splines(path, options)?;
-    match first.doubt() {
-        Some(doubt) => Err(Failure::input(format!("{}: {doubt}", path.display()))),
-        None => Ok(first),
-    }
-}
-
-/// The same for those who take splines as they are: no other camera need be near them.
-pub fn first_or_splines(path: &Path, options: &ReadOptions) -> Result<NamedCamera, Failure> {
     let (cameras, count) = match CameraList::open(path, options)? {
         Some(list) => (list.pieces(1)?.next().transpose()?.unwrap_or_default(), list.len()),
         None => {
@@ -62,5 +53,9 @@ pub fn first_or_splines(path: &Path, options: &ReadOptions) -> Result<NamedCamer
     if count > 1 {
         say!("{}: the first of {count} cameras", path.display());
     }
-    cameras.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+    let first = cameras.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))?;
+    match first.doubt().filter(|_| !options.splines_alone) {
+        Some(doubt) => Err(Failure::input(format!("{}: {doubt}", path.display()))),
+        None => Ok(first),
+    }
 }

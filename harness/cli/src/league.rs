@@ -101,7 +101,8 @@ impl League {
             let what = format!("{} {}", bout.listed.name, class.name());
             let progress = Progress::start(&what, class.trials(), context.quiet);
             let mut found = class.rows(bout, &digest, &|| progress.step())?;
-            found.extend(class.further(bout, &digest, &found, &|| ())?);
+            progress.more(class.trials_after(&found) - class.trials());
+            found.extend(class.further(bout, &digest, &found, &|| progress.step())?);
             progress.finish(&summary(&found));
             rows.retain(|row| row.class != class.name());
             rows.extend(found);

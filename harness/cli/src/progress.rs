@@ -39,6 +39,11 @@ impl Progress {
         progress
     }
 
+    /// There are so many steps more.
+    pub fn more(&self, steps: u64) {
+        self.bar.iter().for_each(|bar| bar.inc_length(steps));
+    }
+
     /// A step is done; from any thread.
     pub fn step(&self) {
         self.bar.iter().for_each(|bar| bar.inc(1));

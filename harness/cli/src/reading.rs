@@ -131,6 +131,7 @@ impl Reading {
             matrix: self.matrix.clone(),
             distortion: self.distortion.clone(),
             other_size: self.other_size,
+            splines_alone: false,
         }
     }
 

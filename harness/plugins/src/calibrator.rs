@@ -160,7 +160,7 @@ impl CalibratorProgram {
             Unanswered::Failed(why)
         })?;
         let elapsed = begun.elapsed().as_secs_f64();
-        let taken = started.process.processor_seconds().zip(taken).map(|(after, before)| after - before);
+        let taken = started.process.processor_seconds().zip(taken).map(|(after, before)| (after - before).max(0.0));
         let said = Said { line, seconds: taken.unwrap_or(elapsed), peak_mb: started.process.peak_mb() };
         self.program.keep_greeted(calibrations_greeting(), started);
         Ok((number, said))

@@ -60,6 +60,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let camera = match model.strip_prefix(SPLINED) {
         Some(shape) => {
             let spline = splined(shape, size, &v).map_err(|error| error.on_line(entry.line).of(key))?;
+            if options.splines_alone {
+                return Ok(vec![NamedCamera { pose: pose(&root)?, notes, ..NamedCamera::splined("", spline) }]);
+            }
             let (camera, kept, note) = nearest(spline).map_err(|problem| CameraFileError::new(problem).on_line(entry.line).of(key))?;
             notes.push(note);
             splines = Some(Box::new(kept));

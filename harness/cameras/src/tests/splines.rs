@@ -1,12 +1,12 @@
 //! mrcal's splines: kept as they are, and fitted within half a pixel or not at all.
 
-use calibench_model::camera::TangentialOrder;
+use calibench_model::camera::{CameraModel, ImageSize, Ray, Splined, TangentialOrder};
 use calibench_model::convert::{ConvertOptions, Method};
 
 use super::super::conversion::{ConversionError, converted};
 use super::super::target::{Given, goal};
-use super::super::{NamedCamera, camera_text, format_named};
-use super::read;
+use super::super::{NamedCamera, ReadOptions, camera_text, format_named};
+use super::{read, read_with};
 
 /// A .cameramodel of 16 x 11 control points whose D are `rough` times a wave beside a smooth distortion.
 fn text(rough: f64) -> String {
@@ -60,6 +60,23 @@ fn other_models_are_fitted_to_the_splines_and_half_a_pixel_is_the_limit() {
     }
     let accepted = to(&rough, "opencv-fisheye", &ConvertOptions { accept: true, ..ConvertOptions::default() }).unwrap();
     assert!(accepted.conversion.residual.max_px > 0.5);
+}
+
+/// Who takes splines as they are gets these and their pose, and a camera that nobody is to take for them, though without control points it is them.
+#[test]
+fn splines_alone_are_read_without_a_camera_that_is_near() {
+    let fitted = source(0.0);
+    let alone = read_with(&text(0.0), ReadOptions { splines_alone: true, ..ReadOptions::default() }).unwrap().cameras.remove(0);
+    let model = |named: &NamedCamera| named.splines.as_ref().unwrap().model.clone();
+    assert_eq!((model(&alone), &alone.pose), (model(&fitted), &fitted.pose));
+    assert!(alone.doubt().is_some() && fitted.doubt().is_none() && alone.camera != fitted.camera);
+    let flat = Splined::flat(ImageSize { width: 3900, height: 2190 }, [1700.5, 1701.25, 1961.125, 1087.5], 3, [16, 11], 120.0);
+    let camera = NamedCamera::splined("", flat.clone()).camera;
+    for (x, y) in [(0.0, 0.0), (0.5, -0.2), (-0.9, 0.6), (0.3, 0.8)] {
+        let ray = Ray::from_tangent(x, y);
+        let off = camera.project(ray).unwrap().distance(flat.project(ray).unwrap());
+        assert!(off < 1e-9, "{x} {y}: {off}");
+    }
 }
 
 /// Splines whose axis stands askew to that of the lens: after a rotation they are as near to other models as before, and the pose is turned with the camera.

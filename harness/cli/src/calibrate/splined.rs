@@ -3,9 +3,7 @@
 use calibench_calibrate::splined::{Core, SplineGrid, SplinedCalibration, SplinedSettings, calibrate_splined, prepare_splined};
 use calibench_cameras::{inputs_of, of_splines};
 use calibench_model::NamedCamera;
-use calibench_model::camera::{Camera, Splined};
-use calibench_model::convert::Region;
-use calibench_model::named_camera::Splines;
+use calibench_model::camera::Splined;
 use calibench_report::calibration::{splined_summary, write_splined_report};
 use calibench_report::json::SplinedAnswer;
 use clap::Args;
@@ -108,11 +106,11 @@ impl Calibrate {
 
     fn deliver_splined(&self, found: &SplinedCalibration<'_>, doubts: &[String], outputs: &Outputs) -> Result<(), Failure> {
         let camera = outputs.camera.as_ref().map_or(Ok(()), |output| {
-            let (splines, lean) = (found.solution.camera(), found.prepared.lean);
+            let splines = found.solution.camera();
             let ending = output.path().extension().and_then(|ending| ending.to_str());
             let holds_splines = self.to.as_deref().map_or(ending == Some("cameramodel"), |to| to == "mrcal");
             // The nearest camera of another model takes longer than all the rest where a part of the frame has no ray.
-            let named = if holds_splines { with(splines, lean) } else { nearest(splines, lean) };
+            let named = if holds_splines { NamedCamera::splined("", splines.clone()) } else { nearest(splines) };
             if !holds_splines {
                 named.notes.iter().for_each(|note| say!("{}: {note}", output.path().display()));
                 if let Some(why) = named.doubt() {
@@ -128,16 +126,10 @@ impl Calibrate {
     }
 }
 
-/// Splines with the camera of another model that is nearest to them, for files that hold none; where none is, with the one that they started from.
-fn nearest(splines: &Splined, lean: Camera) -> NamedCamera {
+/// Splines with the camera of another model that is nearest to them, for files that hold none; where there is none, that is said.
+fn nearest(splines: &Splined) -> NamedCamera {
     of_splines("", splines.clone()).unwrap_or_else(|why| {
         say!("{why}");
-        with(splines, lean)
+        NamedCamera::splined("", splines.clone())
     })
-}
-
-/// Splines with a camera of another model of which nobody says how near it is.
-fn with(splines: &Splined, lean: Camera) -> NamedCamera {
-    let splines = Splines { model: splines.clone(), residual_px: f64::INFINITY, region: Region::Frame };
-    NamedCamera { splines: Some(Box::new(splines)), ..NamedCamera::new("", lean) }
 }

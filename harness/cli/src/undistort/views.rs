@@ -27,8 +27,6 @@ const SHRUNK: f64 = 1.5;
 pub(super) struct Views {
     pub(super) given: View,
     pub(super) made: View,
-    /// The camera of new pictures, where it is that of a file.
-    of_file: Option<NamedCamera>,
 }
 
 impl Views {
@@ -42,7 +40,7 @@ impl Views {
         let (of_camera, of_target) = if command.redistort { (None, given) } else { (given, None) };
         let camera = taken(&command.camera, command.size.or(of_camera), of_camera, command)?;
         let photograph = View::of(&camera);
-        let (new, of_new) = match (command.target_file(), command.to.as_str()) {
+        let new = match (command.target_file(), command.to.as_str()) {
             (Some(file), _) => {
                 if !matches!(command.frame, Frame::Keep) || command.scale != 1.0 {
                     return Err(Failure::input(format!(
@@ -57,19 +55,14 @@ impl Views {
                         NAMES.join(", ")
                     )));
                 }
-                let other = taken(&file, of_target.or(command.size), of_target, command)?;
-                (View::of(&other), Some(other))
+                View::of(&taken(&file, of_target.or(command.size), of_target, command)?)
             }
             (None, name) => {
                 let target = if name == NAMES[0] { Target::Pinhole } else { Target::Equirectangular };
-                (framed(&photograph, target, command.frame.of(), command.scale)?, None)
+                framed(&photograph, target, command.frame.of(), command.scale)?
             }
         };
-        Ok(if command.redistort {
-            Self { given: new, made: photograph, of_file: Some(camera) }
-        } else {
-            Self { given: photograph, made: new, of_file: of_new }
-        })
+        Ok(if command.redistort { Self { given: new, made: photograph } } else { Self { given: photograph, made: new } })
     }
 
     /// The map from new pictures to those that are given.
@@ -112,10 +105,10 @@ impl Views {
 
     /// The camera of new pictures as a file's name and bytes, if there is one.
     pub(super) fn camera_file(&self, convention: &str, pitch_um: Option<f64>) -> Result<Option<(String, Vec<u8>)>, Failure> {
-        let source = match (&self.made, &self.of_file) {
-            (View::Splined(_), Some(named)) => NamedCamera { name: String::new(), ..named.clone() },
-            (View::Camera(camera), _) => NamedCamera::new("", least(*camera)),
-            (View::Splined(_) | View::Equirectangular(_), _) => return Ok(None),
+        let source = match &self.made {
+            View::Camera(camera) => NamedCamera::new("", least(*camera)),
+            View::Splined(splines) => NamedCamera::splined("", splines.as_ref().clone()),
+            View::Equirectangular(_) => return Ok(None),
         };
         let given = Given { source: &source, pitch_um, base_mm: None, order: TangentialOrder::OpenCv, output: None };
         let goal = goal(convention, &given).map_err(|error| match no_target(error) {
@@ -140,7 +133,7 @@ impl Views {
 fn taken(path: &Path, stated: Option<ImageSize>, given: Option<ImageSize>, command: &Undistort) -> Result<NamedCamera, Failure> {
     // Beside photographs, whose size is known, a size that the user states is that of the camera.
     let other_size = command.size.is_none() || given.is_none_or(|given| Some(given) == command.size);
-    let named = inputs::first_or_splines(path, &ReadOptions { size: stated, other_size, ..ReadOptions::default() })?;
+    let named = inputs::first(path, &ReadOptions { size: stated, other_size, splines_alone: true, ..ReadOptions::default() })?;
     let ImageSize { width, height } = named.camera.size();
     match given {
         // Of a photograph that is turned more is said where all photographs are looked at.

@@ -6,7 +6,8 @@ mod splines;
 
 use serde::{Deserialize, Serialize};
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Eucm, Splined};
+use crate::convert::Region;
 
 pub use covariance::ParameterCovariance;
 pub use pose::{Pose, PoseFrame};
@@ -49,6 +50,15 @@ impl NamedCamera {
             notes: Vec::new(),
             implausible: false,
         }
+    }
+
+    /// Splines of which no other camera is known to be near: [`Self::camera`] has their core and is stereographic as they are without control points, and
+    /// [`Self::doubt`] refuses it.
+    pub fn splined(name: impl Into<String>, model: Splined) -> Self {
+        let (size, [fx, fy, cx, cy]) = (model.size, model.core);
+        let flat = Eucm { size, fx, fy, cx, cy, alpha: 0.5, beta: 1.0 };
+        let splines = Splines { model, residual_px: f64::INFINITY, region: Region::Frame };
+        Self { splines: Some(Box::new(splines)), ..Self::new(name, flat.into()) }
     }
 
     /// Why [`Self::camera`] is not to be taken for what the file says, if so: splines that no other model comes near.

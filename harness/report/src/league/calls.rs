@@ -33,7 +33,7 @@ pub fn calls(league: &League) -> String {
                 count(place).to_string(),
                 cells.len().to_string(),
                 percent(|cell| cell.frames.iter().filter(|frame| frame.is_none()).count()),
-                percent(|cell| cell.silent),
+                percent(Cell::silent),
             ]);
             any = true;
         }

@@ -67,9 +67,7 @@ pub struct Cell {
     pub trials: usize,
     /// How many of them ended as calibrated, doubtful, refused, failed.
     pub ended: [usize; 4],
-    /// How many were wrong and said nothing.
-    pub silent: usize,
-    /// Which of them were, trial by trial.
+    /// Whether it was wrong and said nothing, trial by trial.
     silences: Vec<bool>,
     /// Distance from the true camera over the frame of each trial, px, and of photographs that of points from where they are predicted; `None` without a camera that
     /// can be compared.
@@ -101,7 +99,6 @@ impl Cell {
         if let Some(place) = ENDED.iter().position(|status| *status == row.status) {
             self.ended[place] += 1;
         }
-        self.silent += usize::from(row.silent);
         self.silences.push(row.silent);
         self.frames.push(row.frame.or(row.held_out));
         self.across.extend(row.across);
@@ -115,6 +112,16 @@ impl Cell {
         if !row.message.is_empty() {
             *self.said.entry(row.message.clone()).or_default() += 1;
         }
+    }
+
+    /// How many trials were wrong and said nothing.
+    pub fn silent(&self) -> usize {
+        self.silent_of(self.trials)
+    }
+
+    /// How many of the first `trials` were.
+    fn silent_of(&self, trials: usize) -> usize {
+        self.silences.iter().take(trials).filter(|silent| **silent).count()
     }
 
     /// The median distance from the true camera over the frame, px, with its 95 % interval by order statistics; infinite where most trials have no camera.
@@ -279,8 +286,7 @@ impl League {
         let is_as_good = |(one, cell): &(usize, &Cell)| {
             let near = others.iter().position(|other| other == one).is_none_or(|place| p[place] > ALPHA);
             let trials = cell.trials.min(first.trials);
-            let is_silent = cell.silences.iter().take(trials).any(|silent| *silent);
-            near && !is_silent && cameras(cell, trials) >= cameras(first, trials)
+            near && cell.silent_of(trials) == 0 && cameras(cell, trials) >= cameras(first, trials)
         };
         self.asked(class).filter(is_as_good).map(|(one, _)| one).collect()
     }

@@ -7,6 +7,7 @@ use super::picture::{px, short};
 use super::versions::pairs;
 use crate::markdown::{MarkdownTable, contents, fixed};
 use crate::plot::Figure;
+use calibench_images::natural;
 
 /// Systems that the first sentence names.
 const LEADS: usize = 5;
@@ -62,7 +63,7 @@ fn answer(league: &League) -> String {
     });
     let told: Vec<String> =
         leads.iter().take(LEADS).map(|(one, count)| format!("`{}` in {count}", league.calibrators[*one].name)).collect();
-    let silent = |place: &usize| (0..all).filter_map(|class| league.cell(class, *place)).map(|cell| cell.silent).sum::<usize>() > 0;
+    let silent = |place: &usize| (0..all).filter_map(|class| league.cell(class, *place)).map(|cell| cell.silent()).sum::<usize>() > 0;
     let systems = (0..league.calibrators.len()).filter(silent).count();
     format!(
         "As good as the best of a class, with a camera in as many trials and never wrong without a word: {} of {all} classes. {systems} of {} calibrators are wrong and silent somewhere.",
@@ -80,45 +81,43 @@ fn which(league: &League) -> String {
             let doubted = doubted.map_or_else(String::new, |cell| format!(" (doubts {:.0} %)", cell.percent(cell.ended[1])));
             format!("`{}`{doubted}", league.calibrators[*one].name)
         };
-        let mut silent: Vec<(usize, f64)> =
-            league.asked(place).filter(|(_, cell)| cell.silent > 0).map(|(one, cell)| (one, cell.percent(cell.silent))).collect();
-        silent.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let percent = |one: &usize| {
-            let share = silent.iter().find(|(place, _)| place == one).map_or(0.0, |(_, percent)| *percent);
-            format!("`{}` {share:.0} %", league.calibrators[*one].name)
-        };
-        let told = by_system(league, &silent.iter().map(|(one, _)| *one).collect::<Vec<_>>(), percent);
+        let share = |one: &usize| league.cell(place, *one).map_or(0.0, |cell| cell.percent(cell.silent()));
+        let mut silent: Vec<usize> = league.asked(place).filter(|(_, cell)| cell.silent() > 0).map(|(one, _)| one).collect();
+        silent.sort_by(|a, b| share(b).total_cmp(&share(a)));
+        let told = by_system(league, &silent, |one| format!("`{}` {:.0} %", league.calibrators[*one].name, share(one)));
+        let mut good = league.as_good(place);
+        good.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|place| &league.calibrators[*place]);
+            a.system.cmp(&b.system).then(natural(&b.version, &a.version)).then(a.name.len().cmp(&b.name.len()))
+        });
         rows.row([
             format!("[{}]({CLASSES}#{})", short(&class.class), crate::markdown::anchor(short(&class.class))),
             format!("`{}`", class.model),
             best.map_or_else(|| "none".to_owned(), |(median, [low, high])| format!("{} ({} to {})", px(median), px(low), px(high))),
-            by_system(league, &league.as_good(place), name),
+            by_system(league, &good, name),
             told,
         ]);
     }
     rows.render()
 }
 
-/// Names, system by system: where there are more than two of one, that of the newest version, and how many more there are.
+/// Names, system by system: where there are more than two of one, the first, and how many more there are.
 fn by_system(league: &League, places: &[usize], name: impl Fn(&usize) -> String) -> String {
+    let system = |place: &usize| league.calibrators[*place].system.as_str();
     let mut systems: Vec<&str> = Vec::new();
-    for one in places.iter().map(|place| league.calibrators[*place].system.as_str()) {
+    for one in places.iter().map(system) {
         if !systems.contains(&one) {
             systems.push(one);
         }
     }
-    let of = |system: &&str| {
-        let own: Vec<usize> = places.iter().copied().filter(|place| league.calibrators[*place].system == **system).collect();
-        let newest = own.iter().max_by(|a, b| {
-            let [a, b] = [a, b].map(|place| &league.calibrators[**place]);
-            a.version.cmp(&b.version).then(b.name.len().cmp(&a.name.len())).then(b.name.cmp(&a.name))
-        });
-        match newest {
-            Some(newest) if own.len() > 2 => format!("{} and {} more of {system}", name(newest), own.len() - 1),
-            _ => own.iter().map(&name).collect::<Vec<_>>().join(", "),
+    let of = |one: &str| {
+        let own: Vec<&usize> = places.iter().filter(|place| system(place) == one).collect();
+        match own[..] {
+            [first, _, _, ..] => format!("{} and {} more of {one}", name(first), own.len() - 1),
+            _ => own.into_iter().map(&name).collect::<Vec<_>>().join(", "),
         }
     };
-    systems.iter().map(of).collect::<Vec<_>>().join(", ")
+    systems.into_iter().map(of).collect::<Vec<_>>().join(", ")
 }
 
 fn honesty(league: &League) -> String {
@@ -138,7 +137,7 @@ fn honesty(league: &League) -> String {
         let cells: Vec<&Cell> =
             (0..league.classes.len()).filter_map(|class| league.cell(class, place)).filter(|cell| cell.trials > 0).collect();
         let of = |honesty: Honesty| cells.iter().filter(|cell| cell.honesty() == honesty).count().to_string();
-        let (silent, trials) = cells.iter().fold((0, 0), |(silent, trials), cell| (silent + cell.silent, trials + cell.trials));
+        let (silent, trials) = cells.iter().fold((0, 0), |(silent, trials), cell| (silent + cell.silent(), trials + cell.trials));
         let good = league.classes.iter().position(|class| short(&class.class) == GOOD).and_then(|class| league.cell(class, place));
         let mut seconds: Vec<f64> = cells.iter().filter_map(|cell| cell.seconds()).collect();
         seconds.sort_by(f64::total_cmp);
@@ -188,6 +187,7 @@ fn versions(league: &League) -> String {
 fn meaning() -> String {
     format!(
         "- **px**: distance from the true camera over the whole frame after the best rotation, RMS (2D) on a grid; the median over trials, with its 95 % interval by order statistics.\n\
+         - **trials**: those of the class, and 300 of whoever takes less than 0.2 s of a processor for each; the best is the best of those that all have, and others are held against it by those that both have.\n\
          - **as good as the best**: errors of the same trials in pairs; the geometric mean of their ratio to the best is not shown to be above {AS_GOOD} (t-test, Holm over the calibrators of a class, 5 %), cameras in as many trials, never wrong and silent; what it doubted itself stands behind its name.\n\
          - **wrong and silent**: a camera, no word against it, and farther off than five of its stated standard deviations and than 1 px (than 1 px, where nothing is stated).\n\
          - **honest**: the 95 % interval of the mean square of errors in stated standard deviations meets {} to {}; over the frame where a covariance is stated, of the parameters where standard deviations alone are.\n\
@@ -212,6 +212,7 @@ pub fn classes(league: &League) -> String {
 fn table(league: &League, class: usize) -> String {
     let header = [
         "calibrator",
+        "trials",
         "px",
         "95 %",
         "times the best",
@@ -247,6 +248,7 @@ fn table(league: &League, class: usize) -> String {
         let bold = if league.calibrators[place].system == OURS { "**" } else { "" };
         rows.row([
             format!("{bold}`{}`{bold}", league.calibrators[place].name),
+            cell.trials.to_string(),
             precise(median),
             format!("{} to {}", precise(low), precise(high)),
             ratio,
@@ -258,7 +260,7 @@ fn table(league: &League, class: usize) -> String {
             percent(cell.ended[2]),
             percent(cell.ended[3]),
             percent(cell.incomparable()),
-            percent(cell.silent),
+            percent(cell.silent()),
             mm(cell.seconds()),
             cell.peak.map_or_else(String::new, |mb| fixed(mb, 0)),
             said(cell),

@@ -53,7 +53,7 @@ pub fn figure(league: &League) -> Figure {
                 league.classes[class].class.clone(),
                 plain(median),
                 cell.honesty().word().to_owned(),
-                plain(cell.percent(cell.silent)),
+                plain(cell.percent(cell.silent())),
             ];
             plot.cell([(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)], Some(rgb(0.6 * part)), &Said::of(said));
             plot.note((x, y), &format!("{}{}", px(median), mark(cell)), true);
@@ -69,7 +69,7 @@ pub fn figure(league: &League) -> Figure {
 
 /// What is to be noticed of a cell, in a letter.
 fn mark(cell: &Cell) -> &'static str {
-    match (cell.silent > 0, cell.honesty()) {
+    match (cell.silent() > 0, cell.honesty()) {
         (true, _) => "!",
         (false, Honesty::Overconfident) => "+",
         _ => "",

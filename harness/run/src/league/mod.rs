@@ -69,10 +69,11 @@ impl<'a> Class<'a> {
     }
 
     /// How many trials a calibrator gets of which `rows` are those that every one gets.
-    fn trials_after(&self, rows: &[Answered]) -> u64 {
+    pub fn trials_after<'r>(&self, rows: impl IntoIterator<Item = &'r Answered, IntoIter: Clone>) -> u64 {
+        let rows = rows.into_iter();
         let is_drawn = matches!(&self.told, Told::Views(trials) if trials.are_drawn());
-        let is_quick = median(rows.iter().map(|row| row.seconds)).is_some_and(|seconds| seconds < QUICK_S);
-        let is_asked = rows.iter().all(|row| row.status != UNAVAILABLE);
+        let is_quick = median(rows.clone().map(|row| row.seconds)).is_some_and(|seconds| seconds < QUICK_S);
+        let is_asked = rows.clone().all(|row| row.status != UNAVAILABLE);
         if is_drawn && is_asked && is_quick { self.trials().max(QUICK_TRIALS) } else { self.trials() }
     }
 
@@ -100,10 +101,9 @@ impl<'a> Class<'a> {
 
     /// Whether `rows`, of one calibrator, hold all trials of this class under `digest` and `version`.
     pub fn is_up_to_date(&self, rows: &[Answered], digest: &str, version: &str) -> bool {
-        let mine: Vec<Answered> = rows.iter().filter(|row| row.class == self.name()).cloned().collect();
-        let first = mine.len().min(self.trials() as usize);
-        let whole =
-            mine.len() as u64 == self.trials_after(&mine[..first]) || mine.iter().all(|row| row.status == UNAVAILABLE) && !mine.is_empty();
+        let mine: Vec<&Answered> = rows.iter().filter(|row| row.class == self.name()).collect();
+        let asked = self.trials_after(mine.iter().copied().take(self.trials() as usize));
+        let whole = mine.len() as u64 == asked || mine.iter().all(|row| row.status == UNAVAILABLE) && !mine.is_empty();
         whole && mine.iter().all(|row| row.digest == digest && row.version == version)
     }
 
