@@ -156,4 +156,13 @@ mod tests {
         let behind = Ray { x: 0.1, y: 0.0, z: 1.0 };
         assert!(pinhole.image(behind).is_none() && sphere().image(behind).is_some());
     }
+
+    #[test]
+    fn splines_are_taken_before_the_camera_beside_them() {
+        let size = ImageSize { width: 640, height: 480 };
+        let splined = Splined::flat(size, [300.0, 300.0, 320.0, 240.0], 3, [12, 10], 120.0);
+        let named = NamedCamera::splined("", splined.clone());
+        assert_eq!(View::of(&named), View::Splined(Arc::new(splined)));
+        assert_eq!(View::of(&NamedCamera { splines: None, ..named.clone() }), View::Camera(named.camera));
+    }
 }

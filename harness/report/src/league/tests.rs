@@ -60,6 +60,29 @@ fn the_best_and_who_is_as_good_as_it() {
     assert!(league.cell(0, place("other")).unwrap().unavailable.is_some());
 }
 
+/// Who is asked more often is neither the best nor worse for what came after the trials of the others.
+#[test]
+fn those_that_all_were_asked_about_decide() {
+    let class = Class { class: "league/good".into(), why: "Why.".into(), model: "opencv5".into(), photographs: false };
+    let noise = |trial: u64| 1.0 + 0.1 * f64::from(trial as u32 % 5);
+    let few = |factor: f64| -> Vec<Answered> {
+        (0..20).map(|trial| row(trial, "calibrated", Some(factor * noise(trial)), None, false)).collect()
+    };
+    let more = |factor: f64, later: f64, silent: bool| -> Vec<Answered> {
+        let further = (20..300).map(|trial| row(trial, "calibrated", Some(later * noise(trial)), None, silent));
+        few(factor).into_iter().chain(further).collect()
+    };
+    let tables = [("few", few(1.0)), ("later_good", more(1.5, 0.1, false)), ("later_silent", more(1.0001, 9.0, true))];
+    let league = League::new(vec![class], &tables.map(|(name, rows)| (name.to_owned(), rows)));
+    let name = |place: usize| league.calibrators[place].name.as_str();
+    assert_eq!(league.best(0).map(name), Some("few"));
+    assert_eq!(league.as_good(0).into_iter().map(name).collect::<Vec<_>>(), ["few", "later_silent"]);
+    let silent: Vec<usize> = league.asked(0).map(|(_, cell)| cell.silent()).collect();
+    assert_eq!(silent, [0, 0, 280]);
+    let figure = picture::figure(&league);
+    assert!(page::first(&league, "", &figure).contains("| `later_silent` 93 %") && page::classes(&league).contains("| trials |"));
+}
+
 /// Of a version as its name has it.
 fn all_of(name: &str) -> Vec<Answered> {
     let version = name.split('_').nth(1).unwrap();

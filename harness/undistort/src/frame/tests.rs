@@ -34,9 +34,11 @@ fn frames_hold_what_they_say() {
         assert!(map.covered() == u64::from(crop.size().width) * u64::from(crop.size().height), "{camera:?} {}", map.coverage());
         let shown = [kept(&from, &crop).shown, kept(&from, &all).shown];
         assert!(shown[0] > 0.5 && shown[0] < shown[1], "{shown:?}");
-        // One scale on the axis in all of them.
+        // One scale on the axis in all of them, along rows to the right and along columns downwards.
         let step = |view: &View| {
             let axis = view.image(Ray::from_tangent(0.0, 0.0)).unwrap();
+            let down = axis.y - view.image(Ray::from_tangent(0.0, 1e-4)).unwrap().y;
+            assert!(down > 0.0 && (down / (view.image(Ray::from_tangent(1e-4, 0.0)).unwrap().x - axis.x) - 1.0).abs() < 1e-6, "{view:?}");
             view.image(Ray::from_tangent(1e-4, 0.0)).unwrap().x - axis.x
         };
         assert!((step(&keep) / step(&crop) - 1.0).abs() < 1e-9 && (step(&keep) / step(&from) - 1.0).abs() < 1e-6);
