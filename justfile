@@ -74,6 +74,7 @@ quick CRATE:
 summary:
     @echo "not tested, left to 'just nightly': $(grep -l '^nightly = true' scenarios/*/*.toml | sed 's|^scenarios/||; s|[.]toml$||' | paste -sd ' ')"
     @awk '/^test result:/ { passed += $4; failed += $6; skipped += $8 } END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' target/test.log
+    @awk '/^test .* FAILED$/ { print "failed: " $2 } /panicked at/ { print; getline; print }' target/test.log
 
 # What every change leaves out because it is large only to be large: before each release
 nightly: build wheel
