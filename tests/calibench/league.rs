@@ -81,8 +81,15 @@ fn programs_are_asked_once_and_compared_with_the_truth() {
         lost.iter().all(|row| value(row, "status") == "failed" && value(row, "message").contains("could not convert string")),
         "{lost:?}"
     );
-    let is_sound = |row: &&Vec<(String, String)>| value(row, "status") == "calibrated" && value(row, "frame").parse::<f64>().unwrap() < 2.0;
-    assert!(100 * ours.iter().filter(is_sound).count() >= 97 * ours.len(), "{ours:?}");
+    // Not every draw holds the camera to 2 px over the whole frame; what is farther off says so.
+    let error = |row: &[(String, String)]| value(row, "frame").parse::<f64>().ok().zip(value(row, "stated").parse::<f64>().ok());
+    let is_sound = |row: &&Vec<(String, String)>| {
+        value(row, "status") == "calibrated" && value(row, "silent") == "false" && error(row).is_some_and(|(px, stated)| px < 5.0 * stated)
+    };
+    assert!(100 * ours.iter().filter(is_sound).count() >= 99 * ours.len(), "{ours:?}");
+    let mut errors: Vec<f64> = ours.iter().filter_map(|row| error(row)).map(|(px, _)| px).collect();
+    errors.sort_by(f64::total_cmp);
+    assert!(errors[errors.len() / 2] < 0.5, "{errors:?}");
     // The scenario has two trials; who is quick is asked more often.
     assert_eq!([&exact, &longer, &lost, &ours].map(Vec::len), [300; 4]);
 
