@@ -49,6 +49,7 @@ mod paper;
 mod parts;
 mod peers;
 mod peers_table;
+mod per_image;
 mod photographs;
 mod plugins;
 mod point;

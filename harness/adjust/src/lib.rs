@@ -30,12 +30,12 @@ pub use descent::{EXACT, ROUGH};
 pub use error::AdjustError;
 pub use network::{
     Attitude, Centre, Counts, Datum, DistanceObservation, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint,
-    OnSurface, Precision, Status, Surface,
+    OnSurface, PerImage, Precision, Status, Surface,
 };
 pub use quality::{
-    Comparison, Correlation, Covariances, Distance, Found, Held, Length, ObservedReliability, PointReliability, Reliability, Residual,
-    Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, frame_weight, image_information,
-    scale_of, snoop,
+    Comparison, Correlation, Covariances, Distance, Found, Held, Length, ObservedReliability, OwnNumber, PointReliability, Reliability,
+    Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, frame_weight,
+    image_information, scale_of, snoop,
 };
 pub use rig::{Mount, Rig, RigCovariances, RigSolution, Station, adjoint, adjust_rig, mounted, relative, snoop_rig};
 pub use solution::{Options, Solution, adjust};

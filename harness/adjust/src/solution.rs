@@ -16,6 +16,9 @@ use crate::undetermined::{counted, directions};
 /// A pivot below which the normal equations are looked at more closely.
 const SUSPECT: f64 = 1e-8;
 
+/// Where images have numbers of their own all their points would be coupled with each other.
+const BEFORE_CONTROL: &str = "numbers of each image's own are adjusted before control that is fixed, on one board that bends at most: not beside points or distances that are adjusted";
+
 /// How to adjust.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -74,6 +77,9 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
     options.check(network)?;
     let held = hold(network, &network.datum)?;
     let layout = Layout::new(network, &held, &options.left_out)?;
+    if !layout.allows_own(network) {
+        return Err(AdjustError::NotAvailable(BEFORE_CONTROL));
+    }
     if let Some(defect) = counted(network, &layout, &held) {
         return Err(AdjustError::Undetermined(Box::new(defect)));
     }

@@ -14,6 +14,8 @@ pub(crate) struct State {
     pub(crate) poses: Vec<Pose>,
     /// Of each triple: where a point is, or the coefficients of a surface.
     pub(crate) points: Vec<Point3<f64>>,
+    /// Of each image: numbers of its own.
+    pub(crate) own: Vec<Vec<f64>>,
 }
 
 impl State {
@@ -31,13 +33,28 @@ impl State {
             cameras: network.cameras.iter().map(|interior| interior.camera).collect(),
             poses: network.images.iter().map(|image| image.pose).collect(),
             points,
+            own: network.images.iter().map(|image| vec![0.0; network.of_each_image(image.camera).count()]).collect(),
         }
+    }
+
+    /// The camera that pictured an image, with what is the image's own.
+    pub(crate) fn camera(&self, network: &Network, image: usize) -> Camera {
+        let index = network.images[image].camera;
+        let (camera, own) = (self.cameras[index], self.own.get(image).map_or(&[][..], Vec::as_slice));
+        if own.is_empty() {
+            return camera;
+        }
+        let mut values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value).collect();
+        for (of, value) in network.of_each_image(index).zip(own) {
+            of.along.iter().for_each(|&(parameter, share)| values[parameter] += share * value);
+        }
+        camera.with_parameters(&values)
     }
 
     /// Where an observation of a checked network is pictured, if it is.
     pub(crate) fn pixel(&self, network: &Network, o: &ImageObservation) -> Option<PixelPoint> {
         let ray = before(self.poses[o.image].ray(&self.points[o.point]), o.behind);
-        self.cameras[network.images[o.image].camera].project(ray).ok()
+        self.camera(network, o.image).project(ray).ok()
     }
 
     /// After a step.
@@ -55,7 +72,9 @@ impl State {
         let poses = self.poses.iter().enumerate().map(pose).collect();
         let mut points: Vec<_> = self.points.iter().zip(&step.points).map(|(point, change)| point + Vector3::from(*change)).collect();
         layout.triples.carry(&step.points, &mut points);
-        Self { cameras, poses, points }
+        let mut own = self.own.clone();
+        own.iter_mut().flatten().zip(step.own.iter().flatten()).for_each(|(value, change)| *value += change);
+        Self { cameras, poses, points, own }
     }
 }
 
@@ -68,17 +87,20 @@ pub(crate) struct Step {
     pub(crate) poses: Vec<[f64; 6]>,
     /// Of each triple: X, Y, Z of a point, or the coefficients of a surface.
     pub(crate) points: Vec<[f64; 3]>,
+    /// Numbers of each image's own; empty where none is asked for.
+    pub(crate) own: Vec<Vec<f64>>,
 }
 
 impl Step {
     pub(crate) fn zero(cameras: usize, images: usize, points: usize) -> Self {
-        Self { cameras: vec![0.0; cameras], poses: vec![[0.0; 6]; images], points: vec![[0.0; 3]; points] }
+        Self { cameras: vec![0.0; cameras], poses: vec![[0.0; 6]; images], points: vec![[0.0; 3]; points], own: Vec::new() }
     }
 
     pub(crate) fn is_finite(&self) -> bool {
         self.cameras.iter().all(|x| x.is_finite())
             && self.poses.iter().flatten().all(|x| x.is_finite())
             && self.points.iter().flatten().all(|x| x.is_finite())
+            && self.own.iter().flatten().all(|x| x.is_finite())
     }
 }
 

@@ -24,5 +24,6 @@ pub(crate) fn ended(solution: &Solution<'_>) -> Network {
         observations: whole.observations.clone(),
         datum: whole.datum.clone(),
         distances: whole.distances.clone(),
+        per_image: whole.per_image.clone(),
     }
 }

@@ -48,6 +48,14 @@ pub enum CalibrationError {
         /// Whose units they are.
         what: String,
     },
+    /// A number of each image's own that cannot be.
+    #[error("--per-image {name}: {why}")]
+    PerImage {
+        /// The number.
+        name: String,
+        /// The reason, and what was expected.
+        why: String,
+    },
     /// An image that no camera claims.
     #[error("`{image}` belongs to no camera: there are {cameras}; give one of them a pattern that names it")]
     WhoseImage {

@@ -4,7 +4,7 @@ use calibench_model::camera::{Camera, ImageSize};
 use calibench_model::views::photo_of;
 use glob::Pattern;
 
-use super::{CalibrationError, Prior};
+use super::{CalibrationError, OwnParameter, Prior};
 
 /// The name of a camera that is the only one.
 const ALONE: &str = "the camera";
@@ -26,6 +26,8 @@ pub struct Optics {
     pub solve: Option<Vec<String>>,
     /// Parameters that were observed; they are unknowns, solved for or not.
     pub priors: Vec<Prior>,
+    /// What each of its images has for itself.
+    pub per_image: Vec<OwnParameter>,
     /// An interior orientation to start from; parameters that are not solved for keep its values.
     pub start: Option<Camera>,
 }
@@ -33,7 +35,17 @@ pub struct Optics {
 impl Optics {
     /// The only camera, of which nothing but the size of its images is known.
     pub fn new(size: ImageSize) -> Self {
-        Self { name: ALONE.into(), images: Vec::new(), size, pitch_um: None, model: None, solve: None, priors: Vec::new(), start: None }
+        Self {
+            name: ALONE.into(),
+            images: Vec::new(),
+            size,
+            pitch_um: None,
+            model: None,
+            solve: None,
+            priors: Vec::new(),
+            per_image: Vec::new(),
+            start: None,
+        }
     }
 
     /// Whether it claims an image, by its name.

@@ -9,8 +9,8 @@ use calibench_model::{ControlRow, LostRows, Points};
 use crate::against_gross::{self, Found};
 use crate::search::is_of_start;
 use crate::{
-    BoardShape, CalibrationError, DatumChoice, Eccentricity, GrossErrors, LeftOut, Risk, Rival, Settings, Shape, Survey, network, optics,
-    shape,
+    BoardShape, CalibrationError, DatumChoice, Eccentricity, GrossErrors, LeftOut, Risk, Rival, Scatter, Settings, Shape, Survey, network,
+    optics, per_image, shape,
 };
 
 /// A network with its start values.
@@ -32,6 +32,8 @@ pub struct Prepared {
     pub held: Vec<String>,
     /// What is adjusted.
     pub network: Network,
+    /// How far numbers of each image's own scatter, where that was to be told from the images.
+    pub scatter: Vec<Scatter>,
     /// What was taken from the observations of discs, if that was asked for; [`prepare`] leaves it empty.
     pub eccentricity: Option<Eccentricity>,
     /// The sight behind each observation of the network.
@@ -73,7 +75,9 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
     let owners = optics::owners(&settings.cameras, &survey.images)?;
     let Found { plain, starts, rivals } = against_gross::found(survey, &owners, settings)?;
     let (mut network, sights, left_out) = network::network(survey, &owners, &starts, settings)?;
+    network.per_image = per_image::asked(settings, &network)?;
     let shape = shape::shape(&mut network, settings)?;
+    let scatter = per_image::estimate(&mut network, settings)?;
     let (plain, origins) = (plain.unwrap_or(starts.cameras), starts.origins);
     Ok(Prepared {
         settings: settings.clone(),
@@ -83,6 +87,7 @@ fn prepared(survey: &Arc<Survey>, settings: &Settings) -> Result<Prepared, Calib
         rivals,
         shape,
         held: Vec::new(),
+        scatter,
         eccentricity: None,
         lengths: network::lengths(survey, settings, &network)?,
         network,

@@ -121,6 +121,7 @@ pub fn prepare_reconstruction(
             rivals: Vec::new(),
             shape: Shape::Untouched,
             held: Vec::new(),
+            scatter: Vec::new(),
             eccentricity: None,
             lengths: network::lengths(&survey, &settings, &network)?,
             survey: Arc::new(survey),

@@ -93,8 +93,8 @@ fn part(whole: &Network, left_out: &[usize], keeps: impl Fn(usize) -> bool) -> (
         observations.push(ImageObservation { image, ..*o });
     }
     let (cameras, points, distances) = (whole.cameras.clone(), whole.points.clone(), whole.distances.clone());
-    let (datum, surfaces) = (whole.datum.clone(), whole.surfaces.clone());
-    (Network { cameras, images, points, observations, distances, datum, surfaces }, left_out)
+    let (datum, surfaces, per_image) = (whole.datum.clone(), whole.surfaces.clone(), whole.per_image.clone());
+    (Network { cameras, images, points, observations, distances, datum, surfaces, per_image }, left_out)
 }
 
 #[cfg(test)]

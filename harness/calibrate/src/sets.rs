@@ -1,6 +1,6 @@
 //! Several sets of parameters for the same observations: which of them the network supports.
 
-use calibench_adjust::{Comparison, Interior, Network, Options, Solution, Status, Variance, adjust, compare};
+use calibench_adjust::{Comparison, Interior, Network, Options, PerImage, Solution, Status, Variance, adjust, compare};
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
 
@@ -39,7 +39,11 @@ impl Calibration<'_> {
 fn with(prepared: &Prepared, names: &[String]) -> Result<Network, CalibrationError> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let cameras = prepared.network.cameras.iter().zip(&prepared.plain).map(|(interior, plain)| solving(interior, plain, &names));
-    Ok(Network { cameras: cameras.collect::<Result<_, _>>()?, ..prepared.network.clone() })
+    let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
+    // What is held for all images is held for each.
+    let is_solved = |own: &&PerImage| own.along.iter().all(|(parameter, _)| cameras[own.camera].parameters[*parameter].is_unknown());
+    let per_image = prepared.network.per_image.iter().filter(is_solved).cloned().collect();
+    Ok(Network { cameras, per_image, ..prepared.network.clone() })
 }
 
 /// What is no longer solved for is as in `plain`.

@@ -299,6 +299,9 @@ class Calibration:
     def poses(self) -> Dict[str, Pose]:
         """By the names of images."""
     @property
+    def per_image(self) -> Dict[str, Dict[str, Tuple[float, float]]]:
+        """What each image has for itself beside the camera of all: by image and number, its value and its standard deviation."""
+    @property
     def sigma0(self) -> Optional[float]:
         """The standard deviation of an image coordinate over the a-priori one; None without redundancy."""
     @property
@@ -449,6 +452,7 @@ def calibrate(
     pitch: Optional[float] = None,
     solve: Optional[Sequence[str]] = None,
     priors: Optional[Sequence[str]] = None,
+    per_image: Optional[Sequence[str]] = None,
     start: Optional[Camera] = None,
     datum: str = "control",
     board_shape: str = "tested",
@@ -466,7 +470,7 @@ def calibrate(
     """Calibrate a camera: as `calibench calibrate --points --control` does.
 
     `xy` has one array for each image, with a row for each point of the board, NaN where it was not measured; what `measure`
-    returned does as well, and its covariances are weights with `covariances=True`. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
+    returned does as well, and its covariances are weights with `covariances=True`. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `per_image` (as c:2 or c), `datum`,
     `board_shape`, `sigma` (px), `huber`, `snoop`, `compare` and `limit` (px) are as on the command line: `snoop=False` (`--plain` there) keeps all image points,
     `True` leaves out all that Baarda's test rejects, `None` what is wrong for itself beyond doubt. `save_board` writes the board's own corners as these images show
     them, `board_file` takes such a file; `board_scale` is (true over nominal length, standard deviation) of the print, `print_noise` the standard deviation of each

@@ -1,10 +1,11 @@
 //! What was photographed: a board in a word, or object coordinates as an array or by names.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use calibench_calibrate::{OtherBoard, with_corners};
+use calibench_calibrate::{Calibration as Solved, OtherBoard, with_corners};
 use calibench_cameras::read_kalibr_target;
-use calibench_exchange::read_board_corners;
+use calibench_exchange::{read_board_corners, write_board_corners};
+use calibench_files::OutputFile;
 use calibench_judge::{Field, field_of};
 use calibench_model::{ControlRow, boards};
 use calibench_photographs::{Finder, board_of};
@@ -73,5 +74,18 @@ impl Board {
     /// Names of its points, in the order in which arrays have them.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.control.iter().map(|row| row.target.as_str())
+    }
+}
+
+/// Writes the board that was measured.
+pub fn save(path: &Path, calibration: &Solved<'_>, board: &Board) -> Result<(), String> {
+    match &calibration.measured_board {
+        Some(Ok(found)) => {
+            let corners = found.all(&board.control, &calibration.prepared.settings.board);
+            let output = OutputFile::open(path).map_err(|error| error.to_string())?;
+            output.write(|file| write_board_corners(file, &corners)).map_err(|error| error.to_string())
+        }
+        Some(Err(why)) => Err(format!("save_board: the board cannot be measured: {why}")),
+        None => Ok(()),
     }
 }

@@ -1,15 +1,13 @@
 //! `calibrate`: a camera from measured points.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
     BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, StatedBoard,
     Suspected, calibrate as solve, prepare, suspected,
 };
-use calibench_exchange::write_board_corners;
-use calibench_files::OutputFile;
 use calibench_judge::BENT;
 use calibench_model::NamedCamera;
 use calibench_model::Pose as Exterior;
@@ -21,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{matrix, of_matrix, rows, table};
-use crate::boards::Board;
+use crate::boards::{Board, save};
 use crate::camera::Camera;
 use crate::error::{CalibrationError, doubt, in_python, input};
 use crate::image_size::size_of;
@@ -56,6 +54,8 @@ struct Done {
     suspected: Vec<Suspect>,
     warnings: Vec<String>,
     summary: String,
+    /// Image, number, value, standard deviation.
+    per_image: Vec<(String, String, f64, f64)>,
 }
 
 /// Subject, probability of chance, by how many standard deviations the camera moves, in words.
@@ -109,6 +109,19 @@ impl Calibration {
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         self.done.images.iter().zip(&self.done.poses).try_for_each(|(name, pose)| all.set_item(name, Py::new(py, Pose(*pose))?))?;
+        Ok(all)
+    }
+
+    /// What each image has for itself beside the camera of all: by image and number, its value and its standard deviation.
+    #[getter]
+    fn per_image<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (image, name, value, sigma) in &self.done.per_image {
+            if !all.contains(image)? {
+                all.set_item(image, PyDict::new(py))?;
+            }
+            all.as_any().get_item(image)?.set_item(name, (value, sigma))?;
+        }
         Ok(all)
     }
 
@@ -186,7 +199,7 @@ impl Calibration {
 
 /// Calibrates a camera from measured points: as `calibench calibrate --points --control` does.
 #[pyfunction]
-#[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, start = None, datum = "control",
+#[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, per_image = None, start = None, datum = "control",
     board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = None, compare = None, limit = None,
     board_file = None, save_board = None, board_scale = None, print_noise = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
@@ -200,6 +213,7 @@ pub fn calibrate(
     pitch: Option<f64>,
     solve: Option<Vec<String>>,
     priors: Option<Vec<String>>,
+    per_image: Option<Vec<String>>,
     start: Option<&Camera>,
     datum: &str,
     board_shape: &str,
@@ -227,6 +241,7 @@ pub fn calibrate(
         model,
         solve,
         priors: priors.unwrap_or_default().iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
+        per_image: per_image.unwrap_or_default().iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
         start: start.map(|camera| Ok::<_, PyErr>(of_images(&camera.named, size, "start: the camera")?.camera)).transpose()?,
         ..Optics::new(size)
     };
@@ -267,19 +282,6 @@ pub fn calibrate(
         doubt(py, &text)?;
     }
     Ok(Calibration { camera: Py::new(py, Camera::new(named))?, done })
-}
-
-/// Writes the board that was measured.
-fn save(path: &Path, calibration: &Solved<'_>, board: &Board) -> Result<(), String> {
-    match &calibration.measured_board {
-        Some(Ok(found)) => {
-            let corners = found.all(&board.control, &calibration.prepared.settings.board);
-            let output = OutputFile::open(path).map_err(|error| error.to_string())?;
-            output.write(|file| write_board_corners(file, &corners)).map_err(|error| error.to_string())
-        }
-        Some(Err(why)) => Err(format!("save_board: the board cannot be measured: {why}")),
-        None => Ok(()),
-    }
 }
 
 /// A model as `judge` names it: the lens, and whether the board is bent.
@@ -340,6 +342,7 @@ fn done(calibration: &Solved<'_>, suspects: Vec<Suspected>, names: &[String], bo
         rms_px: calibration.rms_px(),
         doubts: calibration.doubts().iter().map(doubted).collect(),
         suspected: suspects.into_iter().map(|found| (found.kind.to_owned(), in_python(&found.what), found.rms_px)).collect(),
+        per_image: calibration.own_numbers().into_iter().map(|own| (own.image, own.name, own.value, own.sigma)).collect(),
         warnings: warnings(calibration).iter().map(|words| in_python(words)).collect(),
         summary: summary(calibration),
     };
@@ -363,28 +366,52 @@ type State<'py> = (
     Option<f64>,
     f64,
     (Vec<Doubted>, Vec<Suspect>, Vec<String>),
-    String,
+    (String, Vec<(String, String, f64, f64)>),
 );
 
 impl Pickled for Calibration {
     const CLASS: &'static str = "Calibration";
 
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, suspected, warnings, summary, .. } = &self.done;
+        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, suspected, warnings, summary, per_image, .. } =
+            &self.done;
         let poses = poses.iter().map(|pose| Py::new(py, Pose(*pose))).collect::<PyResult<Vec<_>>>()?;
         let (covariance, residuals) = (of_matrix(py, covariance)?, self.residuals(py)?);
-        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, (doubts, suspected, warnings), summary)
+        (
+            &self.camera,
+            solved,
+            covariance,
+            images,
+            poses,
+            residuals,
+            used,
+            *sigma0,
+            *rms_px,
+            (doubts, suspected, warnings),
+            (summary, per_image),
+        )
             .into_bound_py_any(py)
     }
 
     fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, (doubts, suspected, warnings), summary): State<
-            '_,
-        > = state.extract()?;
+        let (
+            camera,
+            solved,
+            covariance,
+            images,
+            poses,
+            residuals,
+            used,
+            sigma0,
+            rms_px,
+            (doubts, suspected, warnings),
+            (summary, per_image),
+        ): State<'_> = state.extract()?;
         let covariance = matrix(&covariance)?;
         let residuals = residuals.iter().map(|image| rows(image, "residuals")).collect::<PyResult<_>>()?;
         let poses = poses.iter().map(|pose| pose.get().0).collect();
-        let done = Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, warnings, summary };
+        let done =
+            Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, suspected, warnings, summary, per_image };
         Ok(Self { done, camera })
     }
 }

@@ -119,6 +119,7 @@ def test_mistakes_are_named(measured, control):
         ({"board_shape": "wavy"}, "shape"),
         ({"sigma": -1.0}, "sigma"),
         ({"priors": ["k1"]}, "k1"),
+        ({"per_image": ["c:0"]}, "c:0"),
         ({"images": ["a"]}, "images"),
         ({"huber": 2.0, "snoop": True}, "huber and snoop"),
         ({"size": (0, 3)}, "size"),
@@ -147,6 +148,21 @@ def test_a_verdict_on_points_is_that_of_the_command_line(shots, measured, contro
     printed = program("judge", *words, code=3 if found.doubt else 0)
     assert printed == found.verdict and found.model in ("opencv4", "opencv5") and found.operator == "points"
     assert len(found.columns["measure"]) == len(found.columns["value"]) > 10
+
+
+def test_each_image_has_what_it_has_for_itself():
+    folder = ROOT / "examples" / "per-image"
+    control, seen, truth = (rows(folder / name) for name in ("control.csv", "points.csv", "truth.csv"))
+    names = [row["image"] for row in truth]
+    places = {(row["image"], row["target"]): [float(row["x"]), float(row["y"])] for row in seen}
+    xy = [np.array([places[name, row["target"]] for row in control]) for name in names]
+    board = {row["target"]: [float(row[axis]) for axis in "XYZ"] for row in control}
+    found = cb.calibrate(xy, board, size=(1600, 1200), images=names, per_image=["c:6", "x0:2", "y0:2"], sigma=0.1)
+    assert list(found.per_image) == names and not found.doubts
+    off = [(found.per_image[row["image"]][of][0] - float(row[of])) / found.per_image[row["image"]][of][1] for row in truth for of in ("c", "x0", "y0")]
+    assert 0.4 < np.mean(np.square(off)) < 2.0
+    again = pickle.loads(pickle.dumps(found))
+    assert again.per_image == found.per_image
 
 
 def test_what_cannot_be_is_a_doubt(shots, measured):

@@ -26,6 +26,7 @@ impl Network {
         self.check_surfaces()?;
         self.check_observations()?;
         self.check_distances()?;
+        self.check_per_image()?;
         self.check_datum()
     }
 

@@ -53,6 +53,14 @@ pub enum NetworkError {
         /// Name of the point.
         point: String,
     },
+    /// A number of each image's own changes a parameter that is held.
+    #[error("{of} needs {parameter} to be solved for, and it is held")]
+    Held {
+        /// The number.
+        of: String,
+        /// The parameter.
+        parameter: String,
+    },
     /// The datum does not fit what is known.
     #[error("the datum does not fit: {0}")]
     Datum(String),

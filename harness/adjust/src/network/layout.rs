@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use calibench_model::camera::CameraModel;
+use nalgebra::DMatrix;
 
 use super::{Attitude, Centre, Counts, ImageObservation, Network, NetworkError, Status, Triples};
 
@@ -66,6 +67,8 @@ pub(crate) struct Layout {
     pub(crate) cameras: Vec<CameraPlace>,
     /// The camera of each image.
     pub(crate) camera_of: Vec<usize>,
+    /// Of each camera: whether its images have numbers of their own.
+    pub(crate) has_own: Vec<bool>,
     /// Unknowns of all cameras together.
     pub(crate) width: usize,
     /// Of each image: whether its rotation and its centre are unknowns.
@@ -132,6 +135,7 @@ impl Layout {
             triple_start,
             cameras,
             camera_of: network.images.iter().map(|image| image.camera).collect(),
+            has_own: (0..network.cameras.len()).map(|camera| network.of_each_image(camera).next().is_some()).collect(),
             width,
             pose_free,
             has_unknown_points: triple_free[..network.points.len()].iter().any(|free| *free != [false; 3]),
@@ -189,6 +193,26 @@ impl Layout {
 
     pub(crate) fn is_triple_unknown(&self, triple: usize) -> bool {
         self.triple_free[triple] != [false; 3]
+    }
+
+    /// The one surface of networks whose images have numbers of their own.
+    pub(crate) fn surface(&self) -> Option<usize> {
+        (self.triples.surfaces > 0).then(|| self.triple_free.len() - self.triples.surfaces)
+    }
+
+    /// Whether points stay where they are, but for those of one surface on which all are that were seen: else an image's own numbers would couple all its points.
+    pub(crate) fn allows_own(&self, network: &Network) -> bool {
+        let on_surface = || self.sights.iter().all(|sight| self.triples.surface_of(sight.point()).is_some());
+        network.per_image.is_empty()
+            || (!self.has_unknown_points() && (self.triples.surfaces == 0 || (self.triples.surfaces == 1 && on_surface())))
+    }
+
+    /// Shares of the numbers of each image's own along the unknown parameters of its camera: n x p.
+    pub(crate) fn along(&self, network: &Network, camera: usize) -> DMatrix<f64> {
+        let (free, own) = (&self.cameras[camera].free, network.of_each_image(camera).collect::<Vec<_>>());
+        let share =
+            |parameter: usize, own: &super::PerImage| own.along.iter().filter(|(of, _)| *of == parameter).map(|(_, share)| share).sum();
+        DMatrix::from_fn(free.len(), own.len(), |i, j| share(free[i], own[j]))
     }
 
     pub(crate) fn has_unknown_points(&self) -> bool {

@@ -5,6 +5,7 @@ mod counts;
 mod distance;
 mod error;
 mod layout;
+mod per_image;
 mod status;
 mod surface;
 
@@ -16,6 +17,7 @@ pub use counts::Counts;
 pub use distance::DistanceObservation;
 pub use error::NetworkError;
 pub(crate) use layout::{CameraPlace, Layout, Sight};
+pub use per_image::PerImage;
 pub use status::{Attitude, Centre, Status};
 pub(crate) use surface::Triples;
 pub use surface::{OnSurface, Surface};
@@ -37,6 +39,8 @@ pub struct Network {
     pub datum: Datum,
     /// Shapes that move control points; none as a rule.
     pub surfaces: Vec<Surface>,
+    /// What differs from image to image of a camera; nothing as a rule.
+    pub per_image: Vec<PerImage>,
 }
 
 /// An interior orientation: start values, and what is known of each parameter.

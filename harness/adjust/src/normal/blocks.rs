@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::distances::Stretch;
 use super::image_equations::{Lost, Residual, Setting, View};
 use super::observed_unknowns;
+use super::own::Own;
 use super::projection::{Optics, POSE};
 use super::robust::Loss;
 use crate::network::{Layout, Network};
@@ -35,6 +36,9 @@ pub(crate) struct Normals {
     pub(crate) point_pose: Vec<[f64; 18]>,
     /// Of each image and, within it, each surface: 3 x 6.
     pub(crate) surface_pose: Vec<[f64; 18]>,
+    /// Of each image: what its own numbers leave, and what they alone take off the sum of squares.
+    pub(crate) own: Vec<Own>,
+    pub(crate) own_gain: f64,
     /// Of each sight.
     pub(crate) residuals: Vec<Residual>,
 }
@@ -70,7 +74,11 @@ pub(crate) fn linearise(
     for (image, range) in layout.of_image.iter().enumerate() {
         let camera = network.images[image].camera;
         let free = &layout.cameras[camera].free;
-        let setting = Setting { optics: &optics[camera], pose: &state.poses[image], free, loss, observations: &network.observations };
+        let has_own = layout.has_own[camera];
+        let (own, aside) =
+            (has_own.then(|| Optics::of(&state.camera(network, image), layout.all_before)), has_own.then(|| into.put_aside(layout, image)));
+        let optics = own.as_ref().unwrap_or(&optics[camera]);
+        let setting = Setting { optics, pose: &state.poses[image], free, loss, observations: &network.observations };
         for chunk in chunks(range) {
             let sights = &layout.sights[chunk.clone()];
             let residuals = &mut into.residuals[chunk.clone()];
@@ -79,6 +87,9 @@ pub(crate) fn linearise(
             into.cost += view.cost;
             into.add_view(layout, image, camera, view);
             into.add_points(layout, state, image, chunk, view);
+        }
+        if let Some(aside) = aside {
+            into.eliminate_own((network, layout), state, image, aside).ok_or(Lost(range.start))?;
         }
     }
     observed_unknowns::add(network, layout, state, into);
@@ -98,7 +109,9 @@ fn optics(layout: &Layout, state: &State) -> Vec<Optics> {
 pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scratch: &mut Scratch, into: &mut Normals) -> Result<(), Lost> {
     let optics = optics(layout, state);
     for (image, range) in layout.of_image.iter().enumerate() {
-        let optics = &optics[network.images[image].camera];
+        let camera = network.images[image].camera;
+        let own = layout.has_own[camera].then(|| Optics::of(&state.camera(network, image), layout.all_before));
+        let optics = own.as_ref().unwrap_or(&optics[camera]);
         let setting = Setting { optics, pose: &state.poses[image], free: &[], loss: Loss::Squares, observations: &network.observations };
         for chunk in chunks(range) {
             let sights = &layout.sights[chunk.clone()];
@@ -111,10 +124,13 @@ pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scrat
 }
 
 /// White derivatives of some sights of an image, of each so many: by the unknown parameters of its camera, then six by its pose, then three by its point;
-/// zero where nothing may change.
+/// zero where nothing may change. Of an image with numbers of its own: what these leave of them.
 #[derive(Default)]
 pub(crate) struct Rows {
     values: Vec<[f64; 2]>,
+    /// Of each sight: by the numbers of the image's own.
+    by_own: Vec<[f64; 2]>,
+    own: Own,
     residuals: Vec<Residual>,
     width: usize,
     first: usize,
@@ -130,17 +146,19 @@ impl Rows {
         (network, layout): (&Network, &Layout),
         state: &State,
         loss: Loss,
-        image: usize,
+        (image, own): (usize, Option<&Own>),
         range: Range<usize>,
         Scratch(view): &mut Scratch,
     ) -> Result<(), Lost> {
         let camera = network.images[image].camera;
-        let (free, pose, optics) =
-            (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera], layout.all_before));
+        let (free, pose) = (&layout.cameras[camera].free, &state.poses[image]);
+        let optics = Optics::of(&state.camera(network, image), layout.all_before);
         let setting = Setting { optics: &optics, pose, free, loss, observations: &network.observations };
         let mask = layout.pose_mask(image);
         (self.width, self.first) = (free.len() + POSE + 3, range.start);
         self.values.clear();
+        self.by_own.clear();
+        self.own = own.filter(|own| !own.is_none()).cloned().unwrap_or_default();
         for chunk in chunks(&range) {
             let sights = &layout.sights[chunk.clone()];
             self.residuals.resize(sights.len(), Residual::default());
@@ -149,10 +167,24 @@ impl Rows {
                 let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));
                 let of_pose = (0..POSE).map(|i| if mask[i] { view.at(k, i) } else { [0.0; 2] });
                 let of_point = by_triple(layout, view, (k, sight.point()), &pose.rotation);
+                let start = self.values.len();
                 self.values.extend(parameters.chain(of_pose).chain(of_point));
+                if !self.own.is_none() {
+                    let by_own = self.own.columns(&self.values[start..][..free.len()]);
+                    self.own.take_off(&by_own, (free.len(), layout.triples.surface_of(sight.point()).is_some()), &mut self.values[start..]);
+                    self.by_own.extend(by_own);
+                }
             }
         }
         Ok(())
+    }
+
+    /// What the numbers of an image's own add to `A Q A^T` of a sight, beyond what is in its row.
+    pub(crate) fn beside(&self, sight: usize) -> Matrix2<f64> {
+        let count = self.own.cofactors.nrows();
+        let by: Vec<Vector2<f64>> = self.by_own[(sight - self.first) * count..][..count].iter().map(|by| Vector2::from(*by)).collect();
+        let of = |i: usize, j: usize| by[i] * by[j].transpose() * self.own.cofactors[(i, j)];
+        (0..count * count).map(|k| of(k / count, k % count)).sum()
     }
 
     /// Those of a sight, by its place among all.
@@ -169,7 +201,9 @@ impl Normals {
 
     fn reset(&mut self, layout: &Layout, state: &State) {
         let (images, points) = (state.poses.len(), state.points.len());
-        self.cost = 0.0;
+        (self.cost, self.own_gain) = (0.0, 0.0);
+        self.own.clear();
+        self.own.resize_with(images, Own::default);
         self.camera.resize_with(state.cameras.len(), Vec::new);
         for (block, place) in self.camera.iter_mut().zip(&layout.cameras) {
             zero(block, place.free.len() * place.free.len());

@@ -5,6 +5,7 @@ mod distances;
 mod gram;
 mod image_equations;
 mod observed_unknowns;
+mod own;
 mod projection;
 mod robust;
 

@@ -156,9 +156,16 @@ impl Solution<'_> {
             of_members.extend(member.iter().flat_map(|member| member.own.as_flattened()));
             for start in range.clone().step_by(CHUNK) {
                 let chunk = start..(start + CHUNK).min(range.end);
-                rows.fill((*network, layout), &self.end.state, *loss, image, chunk.clone(), &mut scratch)?;
+                rows.fill(
+                    (*network, layout),
+                    &self.end.state,
+                    *loss,
+                    (image, self.end.normals.own.get(image)),
+                    chunk.clone(),
+                    &mut scratch,
+                )?;
                 for sight in chunk {
-                    let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref());
+                    let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref()) + rows.beside(sight);
                     found.push(self.image_point(sight, adjusted, scale));
                 }
             }
@@ -183,7 +190,14 @@ impl Solution<'_> {
                 let start = next[image];
                 next[image] += layout.sights[start..range.end].iter().take_while(|sight| sight.point() < end).count();
                 if start < next[image] {
-                    rows[image].fill((*network, layout), &self.end.state, *loss, image, start..next[image], &mut scratch)?;
+                    rows[image].fill(
+                        (*network, layout),
+                        &self.end.state,
+                        *loss,
+                        (image, self.end.normals.own.get(image)),
+                        start..next[image],
+                        &mut scratch,
+                    )?;
                 }
             }
             for point in first..end {
@@ -191,8 +205,8 @@ impl Solution<'_> {
                 let member = place.map(|place| inverse.member::<3>(&self.solved, ordered, place, &mut coupling));
                 of_members.extend(member.iter().flat_map(|member| member.own.as_flattened()));
                 for sight in layout.of_triple(point) {
-                    let row = rows[layout.sights[sight].image()].of(sight);
-                    let adjusted = self.adjusted(inverse, sight, row, member.as_ref());
+                    let rows = &rows[layout.sights[sight].image()];
+                    let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref()) + rows.beside(sight);
                     found.push(self.image_point(sight, adjusted, scale));
                 }
             }
@@ -202,7 +216,13 @@ impl Solution<'_> {
     }
 
     /// `A Q A^T` of an image point, white.
-    fn adjusted<const D: usize>(&self, inverse: &Inverse, index: usize, row: &[[f64; 2]], member: Option<&Member<D>>) -> Matrix2<f64> {
+    pub(super) fn adjusted<const D: usize>(
+        &self,
+        inverse: &Inverse,
+        index: usize,
+        row: &[[f64; 2]],
+        member: Option<&Member<D>>,
+    ) -> Matrix2<f64> {
         let (plan, layout, sight) = (&self.engine.plan, &self.engine.layout, &self.engine.layout.sights[index]);
         let camera = layout.camera_of[sight.image()];
         let width = layout.cameras[camera].free.len();
@@ -282,6 +302,10 @@ impl Solution<'_> {
                     add(what, state.points[i][k] - value, sigma, cofactors.points[i][(k, k)]);
                 }
             }
+        }
+        for (image, of, value, cofactor) in self.own_cofactors(inverse) {
+            let own = &network.per_image[of];
+            add(format!("{} of image {} as its own", own.name, network.images[image].name), value, own.sigma, cofactor);
         }
         for (i, (surface, values)) in network.surfaces.iter().zip(self.surfaces()).enumerate() {
             for (k, status) in surface.statuses.iter().enumerate() {

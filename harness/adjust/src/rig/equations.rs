@@ -81,7 +81,7 @@ impl<'r> Frame<'r> {
     pub(super) fn whole(&self, state: &RigState) -> State {
         let pose = |(image, &station): (usize, &usize)| mounted(&state.mounts[self.layout.camera_of[image]], &state.stations[station]);
         let poses = self.rig.station_of.iter().enumerate().map(pose).collect();
-        State { cameras: state.cameras.clone(), poses, points: self.points.clone() }
+        State { cameras: state.cameras.clone(), poses, points: self.points.clone(), ..State::default() }
     }
 
     pub(super) fn moved(&self, state: &RigState, step: &RigStep) -> RigState {

@@ -74,6 +74,9 @@ impl Rig {
             }
         }
         let is_known = network.points.iter().all(|point| point.coordinates == [Status::Fixed; 3]);
+        if !network.per_image.is_empty() {
+            return Err(AdjustError::NotAvailable("the images of a rig have no numbers of their own"));
+        }
         if !is_known || network.datum != Datum::Control || !network.surfaces.is_empty() {
             return Err(AdjustError::NotAvailable("a rig is adjusted before control points that are fixed"));
         }

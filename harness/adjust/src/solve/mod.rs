@@ -170,7 +170,7 @@ impl<'n> Engine<'n> {
         let sight = &self.layout.sights[sight];
         let is_behind = sight.observed(&self.network.observations).behind;
         let ray = before(state.poses[sight.image()].ray(&state.points[sight.point()]), is_behind);
-        let why = state.cameras[self.layout.camera_of[sight.image()]].project(ray).err().unwrap_or(NoCounterpart::NoSolution);
+        let why = state.camera(self.network, sight.image()).project(ray).err().unwrap_or(NoCounterpart::NoSolution);
         let (image, point) = (self.network.images[sight.image()].name.clone(), self.network.points[sight.point()].name.clone());
         AdjustError::NotPictured { image, point, why }
     }
@@ -183,6 +183,7 @@ impl Normals {
         dot(&self.camera_right, &step.cameras)
             + dot(self.pose_right.as_flattened(), step.poses.as_flattened())
             + dot(self.point_right.as_flattened(), step.points.as_flattened())
+            + self.own_gain
     }
 }
 

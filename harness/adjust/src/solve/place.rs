@@ -68,6 +68,7 @@ impl<'e, 'n> Place<'e, 'n> {
         let mut kept = schur.reduced.clone();
         factor.solve(&mut kept);
         schur.back(engine.ordered(state, normals), &kept, step);
+        normals.follow(&engine.layout, step);
         step.is_finite().then_some(factor)
     }
 

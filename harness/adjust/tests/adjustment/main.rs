@@ -8,6 +8,7 @@ mod gross;
 mod inverse;
 mod networks;
 mod noise_free;
+mod per_image;
 mod projection_uncertainty;
 mod quality;
 mod rigs;

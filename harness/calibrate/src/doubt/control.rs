@@ -27,6 +27,9 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     if whole.points.iter().any(|point| point.coordinates != [Status::Fixed; 3]) {
         return Allowed::untested("they are weighted, or some points are none");
     }
+    if !whole.per_image.is_empty() {
+        return Allowed::untested("images have numbers of their own");
+    }
     if whole.points.len() > MOST {
         return Allowed::untested("there are too many");
     }

@@ -26,6 +26,9 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     if network.points.iter().flat_map(|point| point.coordinates).any(Status::is_unknown) {
         return Allowed::untested("object points are unknown too");
     }
+    if !network.per_image.is_empty() {
+        return Allowed::untested("images have numbers of their own");
+    }
     let Some(moving) = Moving::of(solution, |at| at.y) else {
         return Allowed::untested("a pose that changes is not determined");
     };

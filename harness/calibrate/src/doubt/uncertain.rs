@@ -59,7 +59,7 @@ fn stands(calibration: &Calibration<'_>, rival: &Rival) -> Option<bool> {
         return None;
     }
     other.observations.clone_from(&ended.observations);
-    (other.points, other.surfaces, other.datum) = (ended.points, ended.surfaces, ended.datum);
+    (other.points, other.surfaces, other.datum, other.per_image) = (ended.points, ended.surfaces, ended.datum, ended.per_image);
     let found = adjust(&other, &calibration.options()).ok()?;
     let variance = calibration.covariances.variance_factor;
     let is_low = found.cost() - calibration.solution.cost() < WITHIN * variance;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use calibench_calibrate::{Optics, Prior};
+use calibench_calibrate::{Optics, OwnParameter, Prior};
 use calibench_model::NamedCamera;
 use calibench_model::camera::{Camera, ImageSize};
 use calibench_photographs::Photo;
@@ -37,6 +37,9 @@ pub struct Cameras {
     /// An observed parameter and its standard deviation, in the parameter's unit, as in k1=-3e-4:1e-5; may be repeated
     #[arg(long = "prior", value_name = "[CAMERA.]NAME=VALUE:SIGMA", allow_hyphen_values = true)]
     priors: Vec<Prior>,
+    /// What each image has for itself beside what all share, as in c,x0,y0 (a lens that focuses anew): NAME:SIGMA states how far it scatters, in the parameter's unit, NAME lets the images tell
+    #[arg(long, value_name = "[CAMERA=]NAMES", value_parser = |text: &str| For::parse(text, own_parameters))]
+    per_image: Vec<For<Vec<OwnParameter>>>,
     /// A camera file to start from, and whose values the parameters keep that are not solved for
     #[arg(long, value_name = "[CAMERA=]FILE", value_parser = |text: &str| For::parse(text, word))]
     start: Vec<For<String>>,
@@ -82,6 +85,10 @@ fn names(text: &str) -> Result<Vec<String>, String> {
     if names.iter().any(String::is_empty) { Err("expected names of parameters, as in c,x0,y0,k1".into()) } else { Ok(names) }
 }
 
+fn own_parameters(text: &str) -> Result<Vec<OwnParameter>, String> {
+    text.split(',').map(|name| name.parse().map_err(|error: calibench_calibrate::NoOwnParameter| error.to_string())).collect()
+}
+
 /// A camera and the patterns of its images' names.
 #[derive(Clone, Debug)]
 struct Claim {
@@ -125,6 +132,11 @@ impl Cameras {
     /// The models that are named, of whichever camera.
     pub fn models(&self) -> impl Iterator<Item = &str> {
         self.model.iter().map(|model| model.value.as_str())
+    }
+
+    /// Whether images have something for themselves.
+    pub const fn has_per_image(&self) -> bool {
+        !self.per_image.is_empty()
     }
 
     /// Whether parameters were observed.
@@ -204,6 +216,7 @@ impl Cameras {
             camera.model = of(&self.model, &camera.name).cloned();
             camera.solve = of(&self.solve, &camera.name).cloned();
             camera.priors = self.priors(&camera.name);
+            camera.per_image = of(&self.per_image, &camera.name).cloned().unwrap_or_default();
             camera.start = self
                 .start(&camera.name)
                 .filter(|_| starts)
@@ -243,6 +256,7 @@ impl Cameras {
             ("pitch", given(&self.pitch)),
             ("model", given(&self.model)),
             ("solve", given(&self.solve)),
+            ("per-image", given(&self.per_image)),
             ("start", start),
         ] {
             let stranger = given.iter().flatten().find(|name| !known.contains(name));

@@ -19,7 +19,7 @@ use crate::failure::Failure;
 pub struct ReconstructionArguments {
     /// A reconstruction with its image points, adjusted anew as a free network: a folder with COLMAP's cameras, images and points3D, Bundler's bundle.out, OpenMVG's sfm_data.json, or a problem of Bundle Adjustment in the Large
     #[arg(long = "reconstruction", value_name = "FILE", id = "reconstruction",
-          conflicts_with_all = ["photos", "points", "control", "approx", "poses", "claims", "pitch", "model", "priors", "start", "names",
+          conflicts_with_all = ["photos", "points", "control", "approx", "poses", "claims", "pitch", "model", "priors", "per_image", "start", "names",
                                 "board_shape", "board_file", "save_board", "board_scale", "print_noise", "eccentricity", "covariances", "certificate"])]
     pub path: Option<PathBuf>,
     /// Image points of points behind their cameras, where nothing is seen: count them by the line through the projection centre, as most tools do, or leave them out; they are named

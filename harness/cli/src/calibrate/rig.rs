@@ -27,7 +27,7 @@ use crate::failure::Failure;
 pub struct RigArguments {
     /// Cameras that are mounted rigidly to each other, by the names of --camera or --sync; the first defines the frame of the rig
     #[arg(long = "rig", value_name = "NAMES", value_delimiter = ',',
-          conflicts_with_all = ["compare", "report", "certificate", "by", "place", "date", "body", "lens", "scene", "eccentricity", "huber", "poses", "all", "to", "distances", "approx", "length"])]
+          conflicts_with_all = ["compare", "per_image", "report", "certificate", "by", "place", "date", "body", "lens", "scene", "eccentricity", "huber", "poses", "all", "to", "distances", "approx", "length"])]
     names: Vec<String>,
     /// Which images of a rig belong together: of each camera a pattern, in the order of --rig, as in left*.png=right*.png; where * stands for the same text, images are of one moment [default: the patterns of --camera]
     #[arg(long, value_name = "A=B", requires = "names", conflicts_with = "times")]

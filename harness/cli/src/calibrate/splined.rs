@@ -65,6 +65,7 @@ impl Calibrate {
             (self.huber.is_some(), "--huber"),
             (self.snoop, "--snoop"),
             (self.cameras.has_priors(), "--prior"),
+            (self.cameras.has_per_image(), "--per-image"),
         ];
         let name = |(_, name): &(bool, &'static str)| Err(Failure::input(format!("{name} is not there for splines")));
         given.iter().find(|(is_given, _)| *is_given).map_or(Ok(()), name)

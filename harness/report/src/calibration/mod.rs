@@ -12,6 +12,7 @@ mod lengths;
 mod limits;
 mod measured_board;
 mod next;
+mod own_numbers;
 mod page;
 mod ply;
 mod rig;

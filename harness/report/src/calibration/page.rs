@@ -14,7 +14,7 @@ use super::html;
 use super::next::NextSection;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, figures, images_of, known, lengths, measured_board, sets_page, tables};
+use super::{board, checks, discs, figures, images_of, known, lengths, measured_board, own_numbers, sets_page, tables};
 use crate::canvas::write_pictures;
 use crate::corners::Pictured;
 use crate::html::Figures;
@@ -87,11 +87,12 @@ fn rest(calibration: &Calibration<'_>, (pictures, distortion): (&[(String, Strin
     }
     text.push_str(next);
     text.push_str(&images(calibration));
+    text.push_str(&own_numbers::section(calibration));
     text.push_str(&rejected(calibration));
     text.push_str(
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
          targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), of a \
-         board `board.csv` (its bend) and, where it was measured, `board-corners.csv`, of lengths `distances.csv`; `uncertainty.csv` (the maps' numbers, px); `cameras.json` (the cameras with \
+         board `board.csv` (its bend) and, where it was measured, `board-corners.csv`, of lengths `distances.csv`, of what images have for themselves `per-image.csv`; `uncertainty.csv` (the maps' numbers, px); `cameras.json` (the cameras with \
          their covariances, for `calibench task`).\n",
     );
     text
@@ -172,6 +173,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
     lines.extend(measured_board::facts(calibration));
     lines.extend(discs::fact(calibration));
     lines.extend(observed(calibration));
+    lines.extend(own_numbers::facts(calibration));
     if let Some(sigma0) = solution.sigma0() {
         lines.push(unit_weight(calibration, sigma0));
     }

@@ -25,6 +25,7 @@ pub(super) fn write(calibration: &Calibration<'_>, maps: &[Vec<UncertaintyMap>],
     super::board::table(calibration, folder)?;
     super::measured_board::table(calibration, folder)?;
     super::lengths::write(calibration, folder)?;
+    super::own_numbers::write(calibration, folder)?;
     super::uncertainty::write(calibration, maps, folder)?;
     let rows = object_points(calibration);
     folder.write("points.csv", |file| write_control(file, &rows))

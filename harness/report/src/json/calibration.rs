@@ -12,6 +12,7 @@ use super::compared::Set;
 use super::doubted::Doubted;
 use super::lengths::{Length, lengths};
 use super::next::NextAnswer;
+use super::own_numbers::{OwnNumber, own_numbers};
 use super::{Answer, CameraAnswer};
 use crate::calibration::{CORRELATED, images_of, points_by_image, warnings};
 
@@ -44,6 +45,8 @@ pub struct CalibrationAnswer {
     cameras: Vec<CalibratedCamera>,
     /// Distances that were measured, then lengths that were asked for.
     lengths: Vec<Length>,
+    /// What each image has for itself; empty where nothing was asked for.
+    per_image: Vec<OwnNumber>,
     /// Pairs of parameters whose correlation is beyond 0.9.
     correlated: Vec<Correlated>,
     /// What was looked for in the residuals.
@@ -247,6 +250,7 @@ impl CalibrationAnswer {
             rms_px: calibration.rms_px(),
             cameras: (0..calibration.cameras()).map(|index| camera(calibration, index, &tests)).collect::<Result<_, _>>()?,
             lengths: lengths(calibration)?,
+            per_image: own_numbers(calibration),
             correlated: pairs.iter().map(|found| Correlated { a: name(found.pair[0]), b: name(found.pair[1]), rho: found.rho }).collect(),
             checks: calibration.checked.iter().map(check).collect(),
             rivals: prepared.rivals.iter().map(|rival| self::rival(calibration, rival)).collect(),

@@ -14,6 +14,7 @@ mod listing;
 mod measured_board;
 mod measurement;
 mod next;
+mod own_numbers;
 mod rig;
 mod rig_stands;
 mod schema;
