@@ -90,8 +90,9 @@ fn programs_are_asked_once_and_compared_with_the_truth() {
     let mut errors: Vec<f64> = ours.iter().filter_map(|row| error(row)).map(|(px, _)| px).collect();
     errors.sort_by(f64::total_cmp);
     assert!(errors[errors.len() / 2] < 0.5, "{errors:?}");
-    // The scenario has two trials; who is quick is asked more often.
-    assert_eq!([&exact, &longer, &lost, &ours].map(Vec::len), [300; 4]);
+    // The scenario has two trials; who is quick is asked more often. A program that is started anew after each failure is not.
+    assert_eq!([&exact, &longer, &ours].map(Vec::len), [300; 3]);
+    assert!(lost.len() >= 2, "{lost:?}");
 
     let again = run(project.path(), &["league", "-q", "-s", "Stubborn", "-s", "ours"]);
     assert!(stderr(&again).contains("0 cells asked"), "{}", stderr(&again));

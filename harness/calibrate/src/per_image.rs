@@ -1,13 +1,10 @@
 //! What differs from image to image of a camera: which numbers, and how far they scatter.
 
-use std::str::FromStr;
-
 use calibench_adjust::{Network, Options, PerImage, Solution, Variance, adjust, snoop};
 use calibench_model::camera::{Camera, CameraModel, CameraParameter};
-use thiserror::Error;
 
 use crate::ended::ITERATIONS;
-use crate::{Calibration, CalibrationError, GrossErrors, Settings};
+use crate::{CalibrationError, GrossErrors, Settings};
 
 /// Images of a camera from which the scatter of a number of their own is told, at least.
 const LEAST: usize = 6;
@@ -18,32 +15,6 @@ const ROUNDS: usize = 50;
 const SAME: f64 = 1e-3;
 /// Of what images say of their own numbers, the share below which these are not seen at all.
 const UNSEEN: f64 = 0.02;
-
-/// A number of each image's own, as it is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OwnParameter {
-    /// `c` (of models with two focal lengths both together), `x0`, `y0`, or a parameter as the model calls it.
-    pub name: String,
-    /// Its a-priori standard deviation over the images, in its unit; `None` to estimate it from them.
-    pub sigma: Option<f64>,
-}
-
-/// Text that is no number of each image's own.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("`{0}`: expected NAME, or NAME:SIGMA with a positive standard deviation, as in c:2,x0,y0")]
-pub struct NoOwnParameter(String);
-
-impl FromStr for OwnParameter {
-    type Err = NoOwnParameter;
-
-    fn from_str(text: &str) -> Result<Self, NoOwnParameter> {
-        let refused = || NoOwnParameter(text.to_owned());
-        let (name, sigma) = text.split_once(':').map_or((text, None), |(name, sigma)| (name, Some(sigma)));
-        let number = |sigma: &str| sigma.trim().parse().ok().filter(|sigma: &f64| *sigma > 0.0 && sigma.is_finite()).ok_or_else(refused);
-        let name = name.trim().to_owned();
-        if name.is_empty() { Err(refused()) } else { Ok(Self { name, sigma: sigma.map(number).transpose()? }) }
-    }
-}
 
 /// How far a number of each image's own scatters, as the images say.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,51 +27,6 @@ pub struct Scatter {
     pub sigma: f64,
     /// Its unit.
     pub unit: &'static str,
-}
-
-/// A number of an image's own, adjusted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OwnNumber {
-    /// Name of the image.
-    pub image: String,
-    /// Index of its camera.
-    pub camera: usize,
-    /// The number, as it was asked for.
-    pub name: String,
-    /// The first parameter that it changes, by its index: both have one unit.
-    pub parameter: usize,
-    /// By how much the image's camera differs from that of all, in that unit.
-    pub value: f64,
-    /// Its standard deviation, in that unit.
-    pub sigma: f64,
-    /// How far it was expected to be off zero, in that unit.
-    pub prior_sigma: f64,
-    /// How much of it the image points say, from 0 to 1.
-    pub share: f64,
-}
-
-impl Calibration<'_> {
-    /// What each image has for itself, image by image; empty where nothing was asked for.
-    pub fn own_numbers(&self) -> Vec<OwnNumber> {
-        let (network, scale) = (&self.prepared.network, self.covariances.variance_factor.sqrt());
-        if network.per_image.is_empty() {
-            return Vec::new();
-        }
-        let of = |number: calibench_adjust::OwnNumber| {
-            let own = &network.per_image[number.of];
-            OwnNumber {
-                image: network.images[number.image].name.clone(),
-                camera: own.camera,
-                name: own.name.clone(),
-                parameter: own.along.first().map_or(0, |(parameter, _)| *parameter),
-                value: number.value,
-                sigma: number.sigma,
-                prior_sigma: own.sigma * scale,
-                share: number.share,
-            }
-        };
-        self.solution.own_numbers(self.variance()).unwrap_or_default().into_iter().map(of).collect()
-    }
 }
 
 /// The numbers that are asked for; those whose scatter is to be estimated with where that starts.
@@ -237,19 +163,5 @@ impl Components {
         let own = squares.iter().zip(&shares).map(|(square, share)| square / share.max(f64::MIN_POSITIVE)).collect();
         let share = shares.iter().zip(&images).map(|(share, images)| share / (*images).max(1) as f64).collect();
         Ok(Self { image_points, own, share })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_may_have_its_scatter() {
-        assert_eq!("c:2".parse(), Ok(OwnParameter { name: "c".into(), sigma: Some(2.0) }));
-        assert_eq!(" x0 ".parse(), Ok(OwnParameter { name: "x0".into(), sigma: None }));
-        for wrong in ["", ":1", "c:", "c:0", "c:-1", "c:nan", "c:inf"] {
-            assert!(wrong.parse::<OwnParameter>().is_err(), "{wrong}");
-        }
     }
 }

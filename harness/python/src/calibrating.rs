@@ -5,10 +5,9 @@ use std::path::PathBuf;
 
 use calibench_adjust::Use;
 use calibench_calibrate::{
-    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, GrossErrors, MOST_TRIED, Optics, Risk, Settings, StatedBoard,
-    Suspected, calibrate as solve, prepare, suspected,
+    BoardShape, Calibration as Solved, CalibrationError as Unsolved, Doubt, MOST_TRIED, Optics, Settings, StatedBoard, Suspected,
+    calibrate as solve, prepare, suspected,
 };
-use calibench_judge::BENT;
 use calibench_model::NamedCamera;
 use calibench_model::Pose as Exterior;
 use calibench_report::calibration::{summary, warnings};
@@ -19,6 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{matrix, of_matrix, rows, table};
+use crate::asking::{gross, lens_and_board};
 use crate::boards::{Board, save};
 use crate::camera::Camera;
 use crate::error::{CalibrationError, doubt, in_python, input};
@@ -282,28 +282,6 @@ pub fn calibrate(
         doubt(py, &text)?;
     }
     Ok(Calibration { camera: Py::new(py, Camera::new(named))?, done })
-}
-
-/// A model as `judge` names it: the lens, and whether the board is bent.
-fn lens_and_board(model: Option<String>) -> (Option<String>, bool) {
-    match model.as_deref().and_then(|model| model.strip_suffix(BENT)) {
-        Some(lens) => (Some(lens.to_owned()), true),
-        None => (model, false),
-    }
-}
-
-/// What is done about gross errors.
-///
-/// # Errors
-/// Weights for what is left out.
-fn gross(huber: Option<f64>, snoop: Option<bool>) -> PyResult<GrossErrors> {
-    match (huber, snoop) {
-        (Some(_), Some(true)) => Err(input("huber and snoop: one or the other")),
-        (Some(bound), _) => Ok(GrossErrors::Weighted(bound)),
-        (None, Some(true)) => Ok(GrossErrors::Rejected(Risk::EachPoint)),
-        (None, Some(false)) => Ok(GrossErrors::Kept),
-        (None, None) => Ok(GrossErrors::Sought),
-    }
 }
 
 /// A positive number, if there is one; `what` is its name in errors.

@@ -5,6 +5,7 @@
 mod accepting;
 mod answered;
 mod arrays;
+mod asking;
 mod boards;
 mod calibrating;
 mod camera;

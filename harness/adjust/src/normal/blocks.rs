@@ -89,7 +89,7 @@ pub(crate) fn linearise(
             into.add_points(layout, state, image, chunk, view);
         }
         if let Some(aside) = aside {
-            into.eliminate_own((network, layout), state, image, aside).ok_or(Lost(range.start))?;
+            into.eliminate_own((network, layout), state, image, &aside).ok_or(Lost(range.start))?;
         }
     }
     observed_unknowns::add(network, layout, state, into);

@@ -109,7 +109,7 @@ impl Normals {
         (network, layout): (&Network, &Layout),
         state: &State,
         image: usize,
-        aside: Aside,
+        aside: &Aside,
     ) -> Option<()> {
         let place = Place::of(layout, image);
         let along = layout.along(network, place.camera);

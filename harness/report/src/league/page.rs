@@ -63,7 +63,7 @@ fn answer(league: &League) -> String {
     });
     let told: Vec<String> =
         leads.iter().take(LEADS).map(|(one, count)| format!("`{}` in {count}", league.calibrators[*one].name)).collect();
-    let silent = |place: &usize| (0..all).filter_map(|class| league.cell(class, *place)).map(|cell| cell.silent()).sum::<usize>() > 0;
+    let silent = |place: &usize| (0..all).filter_map(|class| league.cell(class, *place)).map(Cell::silent).sum::<usize>() > 0;
     let systems = (0..league.calibrators.len()).filter(silent).count();
     format!(
         "As good as the best of a class, with a camera in as many trials and never wrong without a word: {} of {all} classes. {systems} of {} calibrators are wrong and silent somewhere.",
