@@ -6,6 +6,7 @@ mod gram;
 mod image_equations;
 mod observed_unknowns;
 mod own;
+mod own_elimination;
 mod projection;
 mod robust;
 
