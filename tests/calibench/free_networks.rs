@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::project::{data, number, root, run, stderr, stdout};
+use crate::project::{self, data, number, run, stderr, stdout};
 
 /// Points keep to the middle of the frame: k3 is not determined.
 const NETWORK: [&str; 11] =
@@ -12,11 +12,7 @@ const NETWORK: [&str; 11] =
 const ASKED: [&str; 5] = ["--length", "T01,T20", "--length", "T05,T33", "--json"];
 
 fn example() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for name in ["points.csv", "distances.csv"] {
-        std::fs::copy(root().join("examples/free_network").join(name), folder.path().join(name)).unwrap();
-    }
-    folder
+    project::example("free_network", &["points.csv", "distances.csv"])
 }
 
 fn answer(folder: &Path, arguments: &[&str]) -> (Option<i32>, Value) {

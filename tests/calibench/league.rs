@@ -87,12 +87,13 @@ fn programs_are_asked_once_and_compared_with_the_truth() {
         value(row, "status") == "calibrated" && value(row, "silent") == "false" && error(row).is_some_and(|(px, stated)| px < 5.0 * stated)
     };
     assert!(100 * ours.iter().filter(is_sound).count() >= 99 * ours.len(), "{ours:?}");
+    let is_near = |row: &&Vec<(String, String)>| error(row).is_some_and(|(px, _)| px < 2.0);
+    assert!(100 * ours.iter().filter(is_near).count() >= 95 * ours.len(), "{ours:?}");
     let mut errors: Vec<f64> = ours.iter().filter_map(|row| error(row)).map(|(px, _)| px).collect();
     errors.sort_by(f64::total_cmp);
     assert!(errors[errors.len() / 2] < 0.5, "{errors:?}");
-    // The scenario has two trials; who is quick is asked more often. A program that is started anew after each failure is not.
-    assert_eq!([&exact, &longer, &ours].map(Vec::len), [300; 3]);
-    assert!(lost.len() >= 2, "{lost:?}");
+    // The scenario has two trials; who is quick is asked more often. Of who fails no time is known.
+    assert_eq!([&exact, &longer, &lost, &ours].map(Vec::len), [300, 300, 2, 300]);
 
     let again = run(project.path(), &["league", "-q", "-s", "Stubborn", "-s", "ours"]);
     assert!(stderr(&again).contains("0 cells asked"), "{}", stderr(&again));

@@ -151,6 +151,15 @@ pub fn number(value: &serde_json::Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
+/// A folder with some files of an example.
+pub fn example(name: &str, files: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for file in files {
+        std::fs::copy(root().join("examples").join(name).join(file), folder.path().join(file)).expect("a file of the example");
+    }
+    folder
+}
+
 /// The program, to be run in `folder`. Photographs are found as the tests find them.
 pub fn program(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_calibench-under-test"));

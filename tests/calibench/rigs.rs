@@ -5,7 +5,7 @@ use std::path::Path;
 use calibench_cameras::{ReadOptions, read_camera_with};
 use serde_json::Value;
 
-use crate::project::{root, run, stderr, stdout};
+use crate::project::{self, run, stderr, stdout};
 
 const RIG: [&str; 11] = [
     "calibrate",
@@ -23,11 +23,7 @@ const RIG: [&str; 11] = [
 
 /// The project's example.
 fn example() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for name in ["points.csv", "control.csv", "times.csv"] {
-        std::fs::copy(root().join("examples/rig").join(name), folder.path().join(name)).unwrap();
-    }
-    folder
+    project::example("rig", &["points.csv", "control.csv", "times.csv"])
 }
 
 fn answer(folder: &Path, more: &[&str]) -> (Option<i32>, Value) {

@@ -9,17 +9,13 @@ use calibench_model::camera::{CameraModel, Ray, Splined};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
-use crate::project::{data, number, root, run, stderr, stdout, table};
+use crate::project::{self, data, number, run, stderr, stdout, table};
 
 const POINTS: [&str; 5] = ["calibrate", "--points", "points.csv", "--control", "control.csv"];
 const EXAMPLE: [&str; 5] = ["--size", "1280x960", "--model", "splined:16x13:132:3", "--json"];
 
 fn example() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for name in ["points.csv", "control.csv"] {
-        std::fs::copy(root().join("examples/splined").join(name), folder.path().join(name)).unwrap();
-    }
-    folder
+    project::example("splined", &["points.csv", "control.csv"])
 }
 
 fn answer(folder: &Path, more: &[&str]) -> (Option<i32>, Value) {

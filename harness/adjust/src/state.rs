@@ -14,7 +14,7 @@ pub(crate) struct State {
     pub(crate) poses: Vec<Pose>,
     /// Of each triple: where a point is, or the coefficients of a surface.
     pub(crate) points: Vec<Point3<f64>>,
-    /// Of each image: numbers of its own.
+    /// Of each image: numbers of its own; empty where none is asked for.
     pub(crate) own: Vec<Vec<f64>>,
 }
 
@@ -33,7 +33,7 @@ impl State {
             cameras: network.cameras.iter().map(|interior| interior.camera).collect(),
             poses: network.images.iter().map(|image| image.pose).collect(),
             points,
-            own: network.images.iter().map(|image| vec![0.0; network.of_each_image(image.camera).count()]).collect(),
+            own: network.zero_own(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! What differs from image to image of a camera: which numbers, and how far they scatter.
 
 use calibench_adjust::{Network, Options, PerImage, Solution, Variance, adjust, snoop};
-use calibench_model::camera::{Camera, CameraModel, CameraParameter};
+use calibench_model::camera::{Camera, CameraModel};
 
 use crate::ended::ITERATIONS;
 use crate::{CalibrationError, GrossErrors, Settings};
@@ -51,12 +51,14 @@ pub(crate) fn asked(settings: &Settings, network: &Network) -> Result<Vec<PerIma
                 return Err(refused("two numbers of an image's own change the same parameter; expected each once".into()));
             }
             let images = network.images.iter().filter(|image| image.camera == camera).count();
-            let is_length =
-                ["c", "x0", "y0"].contains(&own.name.as_str()) || ["f", "F", "fx", "fy", "cx", "cy"].contains(&own.name.as_str());
+            let is_length = ["px", "mm"].contains(&parameters[along[0].0].unit);
             let sigma = match own.sigma {
                 Some(sigma) => sigma,
                 None if !is_length => {
-                    return Err(refused(format!("its standard deviation is estimated of c, x0 and y0 alone; expected {}:SIGMA", own.name)));
+                    return Err(refused(format!(
+                        "its standard deviation is estimated of lengths alone, as c, x0 and y0; expected {}:SIGMA",
+                        own.name
+                    )));
                 }
                 None if images < LEAST => {
                     return Err(refused(format!(
@@ -64,7 +66,7 @@ pub(crate) fn asked(settings: &Settings, network: &Network) -> Result<Vec<PerIma
                         own.name
                     )));
                 }
-                None => START * principal_distance(&parameters),
+                None => START * principal_distance(model),
             };
             found.push(PerImage { name: own.name.clone(), camera, along, sigma });
         }
@@ -77,8 +79,9 @@ fn no_such(model: &Camera) -> String {
     format!("the model has no such parameter: expected c, x0, y0, or one of {}", names.join(", "))
 }
 
-fn principal_distance(parameters: &[CameraParameter]) -> f64 {
-    parameters.iter().find(|parameter| ["c", "f", "F", "fx"].contains(&parameter.name)).map_or(1.0, |parameter| parameter.value.abs())
+/// In the unit of the model's lengths.
+fn principal_distance(model: &Camera) -> f64 {
+    along(model, "c").map_or(1.0, |along| model.parameters()[along[0].0].value.abs())
 }
 
 /// Parameters that a number changes, and by how much for each unit of it.

@@ -27,7 +27,7 @@ impl Counts {
             .chain(shapes)
             .for_each(|status| counts.add(status.is_unknown(), matches!(status, Status::Observed { .. }), 1));
         counts.observed += network.distances.len();
-        counts.add(true, true, network.own_numbers());
+        counts.add(true, true, network.zero_own().iter().map(Vec::len).sum());
         for image in &network.images {
             counts.add(image.centre != Centre::Fixed, matches!(image.centre, Centre::Observed { .. }), 3);
             counts.add(image.attitude != Attitude::Fixed, matches!(image.attitude, Attitude::Observed { .. }), 3);

@@ -197,7 +197,7 @@ impl Layout {
 
     /// The one surface of networks whose images have numbers of their own.
     pub(crate) fn surface(&self) -> Option<usize> {
-        (self.triples.surfaces > 0).then(|| self.triple_free.len() - self.triples.surfaces)
+        self.triples.of_surfaces().next()
     }
 
     /// Whether points stay where they are, but for those of one surface on which all are that were seen: else an image's own numbers would couple all its points.

@@ -2,8 +2,8 @@
 
 use calibench_model::camera::CameraModel;
 
-use super::check::{positive, within};
-use super::{Network, NetworkError};
+use super::check::{finite, positive, within};
+use super::{Exterior, Network, NetworkError};
 
 /// A number of each image's own, by which its camera differs from that of all its images: a principal distance that a lens focused anew, a sensor that
 /// sits elsewhere after it was cleaned. Its expectation is zero.
@@ -27,6 +27,7 @@ impl Network {
             let of = || format!("{} of each image", own.name);
             within(of, "camera", own.camera, self.cameras.len())?;
             positive(of, [own.sigma])?;
+            finite(of, own.along.iter().map(|(_, share)| *share))?;
             let interior = &self.cameras[own.camera];
             for &(parameter, _) in &own.along {
                 within(of, "parameter", parameter, interior.parameters.len())?;
@@ -35,7 +36,7 @@ impl Network {
                     return Err(NetworkError::Held { of: of(), parameter: name.into() });
                 }
             }
-            if !own.along.iter().any(|(_, share)| *share != 0.0 && share.is_finite()) {
+            if !own.along.iter().any(|(_, share)| *share != 0.0) {
                 return Err(NetworkError::NotANumber { of: of(), what: "it changes no parameter" });
             }
         }
@@ -47,8 +48,9 @@ impl Network {
         self.per_image.iter().filter(move |own| own.camera == camera)
     }
 
-    /// Numbers of each image's own, of all images together.
-    pub(super) fn own_numbers(&self) -> usize {
-        self.images.iter().map(|image| self.of_each_image(image.camera).count()).sum()
+    /// Of each image a zero for each number of its own; nothing where none is asked for.
+    pub(crate) fn zero_own(&self) -> Vec<Vec<f64>> {
+        let of = |image: &Exterior| vec![0.0; self.of_each_image(image.camera).count()];
+        if self.per_image.is_empty() { Vec::new() } else { self.images.iter().map(of).collect() }
     }
 }

@@ -36,8 +36,9 @@ pub(crate) struct Normals {
     pub(crate) point_pose: Vec<[f64; 18]>,
     /// Of each image and, within it, each surface: 3 x 6.
     pub(crate) surface_pose: Vec<[f64; 18]>,
-    /// Of each image: what its own numbers leave, and what they alone take off the sum of squares.
+    /// Of each image: what its own numbers leave; empty where no image has any.
     pub(crate) own: Vec<Own>,
+    /// What these numbers alone take off the sum of squares.
     pub(crate) own_gain: f64,
     /// Of each sight.
     pub(crate) residuals: Vec<Residual>,
@@ -74,9 +75,8 @@ pub(crate) fn linearise(
     for (image, range) in layout.of_image.iter().enumerate() {
         let camera = network.images[image].camera;
         let free = &layout.cameras[camera].free;
-        let has_own = layout.has_own[camera];
-        let (own, aside) =
-            (has_own.then(|| Optics::of(&state.camera(network, image), layout.all_before)), has_own.then(|| into.put_aside(layout, image)));
+        let own = own_optics((network, layout), state, image);
+        let aside = own.is_some().then(|| into.put_aside(layout, image));
         let optics = own.as_ref().unwrap_or(&optics[camera]);
         let setting = Setting { optics, pose: &state.poses[image], free, loss, observations: &network.observations };
         for chunk in chunks(range) {
@@ -102,6 +102,11 @@ fn optics(layout: &Layout, state: &State) -> Vec<Optics> {
     state.cameras.iter().map(|camera| Optics::of(camera, layout.all_before)).collect()
 }
 
+/// Those of an image whose camera differs from that of the others.
+fn own_optics((network, layout): (&Network, &Layout), state: &State, image: usize) -> Option<Optics> {
+    layout.has_own[layout.camera_of[image]].then(|| Optics::of(&state.camera(network, image), layout.all_before))
+}
+
 /// Residuals alone, at a `state` so near that all else is the same to its last digits.
 ///
 /// # Errors
@@ -109,9 +114,8 @@ fn optics(layout: &Layout, state: &State) -> Vec<Optics> {
 pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scratch: &mut Scratch, into: &mut Normals) -> Result<(), Lost> {
     let optics = optics(layout, state);
     for (image, range) in layout.of_image.iter().enumerate() {
-        let camera = network.images[image].camera;
-        let own = layout.has_own[camera].then(|| Optics::of(&state.camera(network, image), layout.all_before));
-        let optics = own.as_ref().unwrap_or(&optics[camera]);
+        let own = own_optics((network, layout), state, image);
+        let optics = own.as_ref().unwrap_or(&optics[network.images[image].camera]);
         let setting = Setting { optics, pose: &state.poses[image], free: &[], loss: Loss::Squares, observations: &network.observations };
         for chunk in chunks(range) {
             let sights = &layout.sights[chunk.clone()];
@@ -146,7 +150,7 @@ impl Rows {
         (network, layout): (&Network, &Layout),
         state: &State,
         loss: Loss,
-        (image, own): (usize, Option<&Own>),
+        (image, own): (usize, &[Own]),
         range: Range<usize>,
         Scratch(view): &mut Scratch,
     ) -> Result<(), Lost> {
@@ -158,7 +162,7 @@ impl Rows {
         (self.width, self.first) = (free.len() + POSE + 3, range.start);
         self.values.clear();
         self.by_own.clear();
-        self.own = own.filter(|own| !own.is_none()).cloned().unwrap_or_default();
+        self.own = own.get(image).cloned().unwrap_or_default();
         for chunk in chunks(&range) {
             let sights = &layout.sights[chunk.clone()];
             self.residuals.resize(sights.len(), Residual::default());
@@ -203,7 +207,7 @@ impl Normals {
         let (images, points) = (state.poses.len(), state.points.len());
         (self.cost, self.own_gain) = (0.0, 0.0);
         self.own.clear();
-        self.own.resize_with(images, Own::default);
+        self.own.resize_with(if layout.has_own.contains(&true) { images } else { 0 }, Own::default);
         self.camera.resize_with(state.cameras.len(), Vec::new);
         for (block, place) in self.camera.iter_mut().zip(&layout.cameras) {
             zero(block, place.free.len() * place.free.len());

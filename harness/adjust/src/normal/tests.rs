@@ -90,7 +90,7 @@ fn image_coordinates_by_every_unknown_of_every_model() {
         let network = network(camera);
         let (layout, state) = (Layout::new(&network, &[], &[]).unwrap(), State::of(&network));
         let mut rows = Rows::default();
-        rows.fill((&network, &layout), &state, Loss::Squares, (0, None), 0..layout.sights.len(), &mut Scratch::default()).unwrap();
+        rows.fill((&network, &layout), &state, Loss::Squares, (0, &[]), 0..layout.sights.len(), &mut Scratch::default()).unwrap();
         for k in 0..layout.width + 6 + 33 {
             // The column of point `own` of each row; other points do nothing.
             let of = |sight: usize| match k.checked_sub(layout.width + 6) {

@@ -148,6 +148,7 @@ impl Solution<'_> {
 
     fn image_by_image(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<Vec<f64>, Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
+        let (state, own) = (&self.end.state, &self.end.normals.own);
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         let (mut rows, mut scratch, mut of_members) = (Rows::default(), Scratch::default(), Vec::with_capacity(36 * plan.members.len()));
         for (image, range) in layout.of_image.iter().enumerate() {
@@ -156,14 +157,7 @@ impl Solution<'_> {
             of_members.extend(member.iter().flat_map(|member| member.own.as_flattened()));
             for start in range.clone().step_by(CHUNK) {
                 let chunk = start..(start + CHUNK).min(range.end);
-                rows.fill(
-                    (*network, layout),
-                    &self.end.state,
-                    *loss,
-                    (image, self.end.normals.own.get(image)),
-                    chunk.clone(),
-                    &mut scratch,
-                )?;
+                rows.fill((*network, layout), state, *loss, (image, own), chunk.clone(), &mut scratch)?;
                 for sight in chunk {
                     let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref()) + rows.beside(sight);
                     found.push(self.image_point(sight, adjusted, scale));
@@ -176,6 +170,7 @@ impl Solution<'_> {
     /// Some points at a time, with all their sights: those of an image are in the order of their points.
     fn point_by_point(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<Vec<f64>, Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
+        let (state, own) = (&self.end.state, &self.end.normals.own);
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         let (count, mut next) = (layout.triple_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
         let mut rows: Vec<Rows> = (0..layout.of_image.len()).map(|_| Rows::default()).collect();
@@ -190,14 +185,7 @@ impl Solution<'_> {
                 let start = next[image];
                 next[image] += layout.sights[start..range.end].iter().take_while(|sight| sight.point() < end).count();
                 if start < next[image] {
-                    rows[image].fill(
-                        (*network, layout),
-                        &self.end.state,
-                        *loss,
-                        (image, self.end.normals.own.get(image)),
-                        start..next[image],
-                        &mut scratch,
-                    )?;
+                    rows[image].fill((*network, layout), state, *loss, (image, own), start..next[image], &mut scratch)?;
                 }
             }
             for point in first..end {

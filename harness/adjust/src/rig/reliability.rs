@@ -21,7 +21,7 @@ impl RigSolution<'_> {
         let (network, layout, state) = (&self.rig().network, &self.frame.layout, self.frame.whole(&self.state));
         let (mut rows, mut scratch, mut points) = (Rows::default(), Scratch::default(), Vec::with_capacity(layout.sights.len()));
         for (image, range) in layout.of_image.iter().enumerate().filter(|(_, range)| !range.is_empty()) {
-            let filled = rows.fill((network, layout), &state, self.frame.loss, (image, None), range.clone(), &mut scratch);
+            let filled = rows.fill((network, layout), &state, self.frame.loss, (image, &[]), range.clone(), &mut scratch);
             filled.map_err(|_| AdjustError::NotAvailable("the result does not picture its points"))?;
             let own = self.of_image(image);
             for sight in range.clone() {

@@ -57,7 +57,7 @@ impl Window {
             return;
         }
         // The state pictures all sights: its normal equations are there.
-        let pictured = self.rows.fill((engine.network, layout), of.state, engine.loss, (image, None), sights.clone(), &mut self.scratch);
+        let pictured = self.rows.fill((engine.network, layout), of.state, engine.loss, (image, &[]), sights.clone(), &mut self.scratch);
         debug_assert!(pictured.is_ok());
         let width = layout.cameras[layout.camera_of[image]].free.len();
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];

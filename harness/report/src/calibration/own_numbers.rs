@@ -2,6 +2,7 @@
 
 use std::io;
 
+use calibench_adjust::PerImage;
 use calibench_calibrate::{Calibration, OwnNumber, Scatter};
 use calibench_files::NewFolder;
 use calibench_model::camera::CameraModel;
@@ -24,6 +25,25 @@ pub(super) fn facts<'c>(calibration: &'c Calibration<'_>) -> impl Iterator<Item 
             format!("{name}{of} differs from image to image by {} {unit} (standard deviation, as the images tell)", rounded(0.0, *sigma).1)
         }
     })
+}
+
+/// What the camera's covariance has not: by how much a further photograph may differ.
+pub(super) fn warning(calibration: &Calibration<'_>) -> Option<String> {
+    let (prepared, scale) = (calibration.prepared, calibration.covariances.variance_factor.sqrt());
+    let is_unseen =
+        |own: &PerImage| prepared.scatter.iter().any(|seen| seen.sigma == 0.0 && seen.camera == own.camera && seen.name == own.name);
+    let one = |own: &PerImage| {
+        let unit = own.along.first().map_or("", |(parameter, _)| calibration.camera(own.camera).parameters()[*parameter].unit);
+        format!("{}{} by {} {unit}", own.name, calibration.of(own.camera), rounded(0.0, own.sigma * scale).1).trim_end().to_owned()
+    };
+    let all: Vec<String> = prepared.network.per_image.iter().filter(|own| !is_unseen(own)).map(one).collect();
+    let words = || {
+        format!(
+            "a further photograph differs from the camera of all, {} (standard deviations), which its covariance has not",
+            all.join(", ")
+        )
+    };
+    (!all.is_empty()).then(words)
 }
 
 /// The table of images; nothing where nothing was asked for.

@@ -4,7 +4,7 @@ use calibench_adjust::{Significance, Use};
 use calibench_calibrate::{Calibration, GrossErrors, Risk};
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
-use super::{board, checks, discs, scale};
+use super::{board, checks, discs, own_numbers, scale};
 use crate::plain;
 
 /// Times that the images may disagree with the standard deviations: from twenty groups a ratio is known to a sixth.
@@ -35,6 +35,7 @@ pub fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     warnings.extend(calibration.rims.iter().cloned());
     warnings.extend(board::warning(calibration));
     warnings.extend(discs::warnings(calibration));
+    warnings.extend(own_numbers::warning(calibration));
     warnings.extend(held(calibration));
     warnings.extend(scale::warnings(calibration));
     warnings.extend(half(calibration));
