@@ -10,6 +10,7 @@ mod network;
 mod next;
 mod orientations;
 mod pairs;
+mod per_image;
 mod planted;
 mod points;
 mod reconstructed;

@@ -52,7 +52,7 @@ pub fn wall(camera: Camera) -> Scene {
 }
 
 /// Normal noise from sums of uniform numbers of a linear congruence (Knuth): small, and the same everywhere.
-fn noise(state: &mut u64) -> f64 {
+pub fn noise(state: &mut u64) -> f64 {
     let mut uniform = || {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*state >> 11) as f64 / (1_u64 << 53) as f64

@@ -52,7 +52,7 @@ pub(super) fn section(calibration: &Calibration<'_>) -> String {
     if numbers.is_empty() {
         return String::new();
     }
-    let mut rows = MarkdownTable::new(&["image", "number", "differs by", "standard deviation", "unit", "times it"]);
+    let mut rows = MarkdownTable::new(&["image", "number", "differs by", "standard deviation", "unit", "t"]);
     for number in numbers.iter().take(MOST) {
         let (value, sigma) = rounded(number.value, number.sigma);
         let image = escape::markdown(&number.image).into_owned();
